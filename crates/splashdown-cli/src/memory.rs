@@ -1,7 +1,7 @@
 //! The memory of this machine, where the system reports it in a file (Linux), and a check whether a scene fits.
 
 use splashdown::scene::{Derived, Scene};
-use splashdown::{Device, memory_forecast, neighbour_lists_forecast};
+use splashdown::{Device, memory_forecast, neighbour_search_forecast};
 use splashdown_gpu::list_adapters;
 
 use crate::exit::{Exit, Failure};
@@ -12,8 +12,8 @@ use crate::human;
 /// # Errors
 /// [`Exit::Device`], with the required and the available memory.
 pub fn check(scene: &Scene, device: &Device) -> Result<(), Failure> {
-    let lists = neighbour_lists_forecast(scene, Derived::new(scene).particles, None);
-    let needed = memory_forecast(scene).saturating_add(lists);
+    let search = neighbour_search_forecast(scene, Derived::new(scene).particles, None);
+    let needed = memory_forecast(scene).saturating_add(search);
     let Some(available) = available().filter(|&available| needed > available) else { return Ok(()) };
     let on_cpu = match device {
         Device::Cpu => true,

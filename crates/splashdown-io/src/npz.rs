@@ -39,7 +39,10 @@ pub(crate) fn write_particles(path: &Path, particles: &Particles) -> Result<u64,
     let others = particles.other_attributes().zip(&names).map(|(attribute, name)| {
         (name.as_str(), "<f4", attribute.components, bytemuck::cast_slice(&attribute.values))
     });
-    let fields = fields.into_iter().filter(|&(name, _, _, data)| !data.is_empty() || name == "positions");
+    // Without particles an empty array does not mean that the quantity is unknown.
+    let fields = fields
+        .into_iter()
+        .filter(|(name, _, _, data)| count == 0 || !data.is_empty() || *name == "positions");
     let arrays = fields.chain(others);
     atomic::write_file(path, |file: &mut BufWriter<File>| {
         let mut archive = ZipWriter::new(file);

@@ -1,7 +1,7 @@
 //! Whether a scene fits the device on which the page would simulate it.
 
 use splashdown::scene::{Derived, Scene};
-use splashdown::{check_particles, memory_forecast, neighbour_lists_forecast};
+use splashdown::{check_particles, memory_forecast, neighbour_search_forecast};
 
 /// The memory in bytes that the page may take if the browser does not tell that of the device.
 const UNKNOWN: u64 = 4_000_000_000;
@@ -34,8 +34,8 @@ pub(crate) fn check(scene: &Scene, largest_buffer: u64, memory: u64) -> Result<(
 
 /// The memory of its simulation in bytes.
 fn forecast(scene: &Scene, largest_buffer: u64) -> u64 {
-    let lists = neighbour_lists_forecast(scene, Derived::new(scene).particles, Some(largest_buffer));
-    memory_forecast(scene).saturating_add(lists)
+    let search = neighbour_search_forecast(scene, Derived::new(scene).particles, Some(largest_buffer));
+    memory_forecast(scene).saturating_add(search)
 }
 
 /// A spacing in m, with two digits, at which the memory suffices. `None` if the grid of the domain alone does not fit.

@@ -115,7 +115,7 @@ pub use device::Device;
 pub use error::SimulationError;
 #[doc(hidden)]
 pub use memory::{
-    check_particles, largest_particle_count, memory_forecast, memory_forecast_of, neighbour_lists_forecast,
+    check_particles, largest_particle_count, memory_forecast, memory_forecast_of, neighbour_search_forecast,
 };
 pub use mouse_force::MouseForce;
 pub use reconstruct::reconstruct;

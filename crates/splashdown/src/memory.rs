@@ -92,20 +92,23 @@ pub fn memory_forecast_of(scene: &Scene, inventory: &Inventory) -> u64 {
     forecast(scene, inventory.particles)
 }
 
-/// The bytes that the lists of neighbours of `dfsph` take in addition to [`memory_forecast`], for a number of particles. Other
-/// solvers have none.
+/// The bytes that the search for neighbours takes in addition to [`memory_forecast`], for a number of particles, which depend on
+/// the device: lists of neighbours for `dfsph`, and on a GPU the cells of divided cubes ([`Grid`]).
 ///
 /// On the CPU, where `gpu_buffer` is `None`, a neighbour takes 8 bytes, and a sphere of the support radius contains 33
 /// at a support ratio of two. An implicit viscosity has lists of its own. On a GPU, whose largest buffer has
 /// `gpu_buffer` bytes, a neighbour takes 4 bytes, and the lists have room for more.
-pub fn neighbour_lists_forecast(scene: &Scene, particles: u64, gpu_buffer: Option<u64>) -> u64 {
+pub fn neighbour_search_forecast(scene: &Scene, particles: u64, gpu_buffer: Option<u64>) -> u64 {
     let extras = Scheme::new(scene).extras(false);
     // With those that emitters add.
     let particles = Built::of(scene).flow(scene).unwrap_or_default().capacity(particles, u64::MAX);
     let ratio = scene.solver.support_radius(scene.fluid.particle_spacing) / scene.fluid.particle_spacing;
     if let Some(largest) = gpu_buffer {
         let layers = if extras.implicit { list_layers(ratio, particles, largest) } else { 0 };
-        return particles.saturating_mul(size_of::<UVec4>() as u64 * layers);
+        let lists = particles.saturating_mul(size_of::<UVec4>() as u64 * layers);
+        let count = u32::try_from(particles).unwrap_or(u32::MAX);
+        let cells = grid_of(scene).map_or(0, |grid| grid.for_gpu(count).cell_count - grid.cell_count);
+        return lists.saturating_add(u64::from(cells) * PER_CELL);
     }
     let lists = u64::from(extras.implicit) + u64::from(extras.viscous);
     let neighbours = 4.0 / 3.0 * std::f32::consts::PI * ratio.powi(3);
@@ -123,7 +126,7 @@ fn forecast(scene: &Scene, particles: u64) -> u64 {
         particles,
     ));
     // A domain with too many cells is an error when the simulation starts.
-    let Some(grid) = Grid::new(scene.domain.min, scene.domain.max, grid_reach(scene)) else {
+    let Some(grid) = grid_of(scene) else {
         return motion.saturating_add(PER_CELL << 31);
     };
     let surface = if scene.surface.enabled {
@@ -161,8 +164,13 @@ fn per_particle(scene: &Scene) -> u64 {
         + some(scene.solver.sort == Sort::Bitonic, PAIR)
 }
 
+/// The grid of a scene, whose cells are cubes; `None` if there are too many.
+pub(crate) fn grid_of(scene: &Scene) -> Option<Grid> {
+    Grid::new(scene.domain.min, scene.domain.max, grid_reach(scene))
+}
+
 /// The smallest size of a grid cell in metres: the simulation and the surface use the same grid.
-pub(crate) fn grid_reach(scene: &Scene) -> f32 {
+fn grid_reach(scene: &Scene) -> f32 {
     let spacing = scene.fluid.particle_spacing;
     scene.solver.support_radius(spacing).max(scene.surface.support_ratio * spacing)
 }

@@ -9,7 +9,7 @@ use splashdown::sample::Inventory;
 use splashdown::scene::{Derived, Method, Scene, SceneWarning};
 use splashdown::{
     Device, Packing, Simulation, SimulationError, check_particles, memory_forecast_of,
-    neighbour_lists_forecast,
+    neighbour_search_forecast,
 };
 
 use crate::args::CheckArguments;
@@ -80,8 +80,11 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let memory = memory_forecast_of(&scene, &inventory);
     // A scene too large for the device is still valid: the report is printed before the error.
     let executor = arguments.device.device.executor()?;
-    let lists =
-        neighbour_lists_forecast(&scene, inventory.particles, executor.gpu().map(|gpu| gpu.largest_buffer()));
+    let search = neighbour_search_forecast(
+        &scene,
+        inventory.particles,
+        executor.gpu().map(|gpu| gpu.largest_buffer()),
+    );
     let fits = check_particles(inventory.particles, executor.largest_buffer(), &scene);
     drop(executor);
     let speed = measure(&scene, &derived, &arguments.device.device)?;
@@ -95,7 +98,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             derived: &derived,
             removed: inventory.removed,
             initial_packing: packing.as_ref(),
-            memory_forecast: memory.saturating_add(lists),
+            memory_forecast: memory.saturating_add(search),
             speed: &speed,
             meshes: &meshes,
             resolution: &resolution,
@@ -109,7 +112,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let file = arguments.scene.display();
     console::print(format!(
         "{file}: valid\n{}",
-        describe(&scene, &derived, &inventory, [memory, lists], &speed)
+        describe(&scene, &derived, &inventory, [memory, search], &speed)
     ));
     if let Some(packing) = &packing {
         print_packing(packing);
@@ -125,13 +128,13 @@ fn prepare(scene: &Scene, progress: &ProgressFn) -> Result<(Inventory, Option<Pa
     Ok((splashdown::inventory(scene, &progress)?, splashdown::initial_packing(scene, &progress)?))
 }
 
-/// The memory of the buffers, and of the lists of neighbours in addition, in bytes.
-fn describe_memory(buffers: u64, lists: u64) -> String {
+/// The memory of the buffers, and of the neighbour search in addition, in bytes.
+fn describe_memory(buffers: u64, search: u64) -> String {
     let buffers = format!("about {}", human::bytes(buffers));
-    if lists == 0 {
+    if search == 0 {
         buffers
     } else {
-        format!("{buffers}, and {} for lists of neighbours", human::bytes(lists))
+        format!("{buffers}, and {} for the neighbour search", human::bytes(search))
     }
 }
 
@@ -139,7 +142,7 @@ fn describe(
     scene: &Scene,
     derived: &Derived,
     inventory: &Inventory,
-    [buffers, lists]: [u64; 2],
+    [buffers, search]: [u64; 2],
     speed: &Speed,
 ) -> String {
     let fluid = &scene.fluid;
@@ -173,7 +176,7 @@ fn describe(
                 scene.duration
             ),
         ),
-        ("memory", describe_memory(buffers, lists)),
+        ("memory", describe_memory(buffers, search)),
         (
             "expected time",
             format!(

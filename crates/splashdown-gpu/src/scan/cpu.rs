@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::{ReduceBindings, ScanParams, SingleBindings, SpreadBindings};
 
 /// Blocks per task: 16,384 words, enough to hide the overhead of a task.
-const BLOCKS_PER_TASK: usize = 4;
+const BLOCKS_PER_TASK: usize = 8;
 
 /// The sum of every block of `256 * RUN` counts.
 pub(super) fn reduce<const RUN: usize, const MOST: u32>(

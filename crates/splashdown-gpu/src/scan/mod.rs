@@ -2,14 +2,14 @@
 //!
 //! # How it works
 //!
-//! *Reduce, then scan*, in two dispatches. One workgroup sums each block of 4,096 counts. Then each workgroup adds up the
-//! sums of the preceding blocks, with all of its invocations, and scans its block starting from that sum. Up to 4,096
-//! blocks (16.8 million counts) this takes at most sixteen more reads per invocation, of words that all workgroups
+//! *Reduce, then scan*, in two dispatches. One workgroup sums each block of 2,048 counts. Then each workgroup adds up the
+//! sums of the preceding blocks, with all of its invocations, and scans its block starting from that sum. Up to 8,192
+//! blocks (16.8 million counts) this takes at most 32 more reads per invocation, of words that all workgroups
 //! share; a separate dispatch between the two costs more. Longer inputs take three dispatches: in the middle, one
 //! workgroup scans the sums in a loop over 4,096 sums per round. No further level is needed at any length: the longest
-//! buffer a device binds (2^30 counts) takes 64 rounds. Short inputs take only the middle pass.
+//! buffer a device binds (2^30 counts) takes 128 rounds. Short inputs take only the middle pass.
 //!
-//! Inside a workgroup each invocation sums sixteen counts in registers, and sixteen invocations combine the 256 sums: two
+//! Inside a workgroup each invocation sums eight counts in registers, and sixteen invocations combine the 256 sums: two
 //! barriers per round, where the usual tree has sixteen.
 //!
 //! # Cost
@@ -33,9 +33,9 @@ use crate::{
 /// Up to this length one workgroup computes the whole scan.
 const SINGLE_MAX: u32 = 16_384;
 /// Up to this many blocks every workgroup adds up the sums of the preceding blocks itself.
-const MOST_SUMS: u32 = 4096;
-/// Counts per invocation.
-const RUN: usize = 16;
+const MOST_SUMS: u32 = 8192;
+/// Counts per invocation. More of them would leave most of a large GPU without work: 90,000 cells are 46 blocks.
+const RUN: usize = 8;
 /// Counts in a block.
 const BLOCK: u32 = 256 * RUN as u32;
 

@@ -8,8 +8,13 @@ struct ScanParams {
 
 #bindings
 
-override RUN: u32 = 16u;
+override RUN: u32 = 8u;
 override MOST: u32 = 0xffffffffu; // 1 treats every value other than 0 as 1
+
+fn count_at(first: u32, i: u32) -> u32 {
+    let at = first + i * 256u;
+    return select(0u, min(counts[min(at, params.len - 1u)], MOST), i < RUN && at < params.len);
+}
 
 @compute @workgroup_size(256)
 fn scan_reduce(
@@ -19,15 +24,12 @@ fn scan_reduce(
 ) {
     let block = linear_group(group, groups);
     let first = block * 256u * RUN + lane;
-    var sum = 0u;
-    // Neighbouring invocations read neighbouring words: the order of the sum over a block is arbitrary.
-    for (var i = 0u; i < RUN; i++) {
-        let at = first + i * 256u;
-        if (at < params.len) {
-            sum += min(counts[at], MOST);
-        }
-    }
-    let prefix = workgroup_prefix(sum, lane, 0u);
+    // Neighbouring invocations read neighbouring words: the order of the sum over a block is arbitrary. Without a loop, whose
+    // checks would keep the loads from overlapping.
+    let low = vec4(count_at(first, 0u), count_at(first, 1u), count_at(first, 2u), count_at(first, 3u));
+    let high = vec4(count_at(first, 4u), count_at(first, 5u), count_at(first, 6u), count_at(first, 7u));
+    let pairs = low + high;
+    let prefix = workgroup_prefix(pairs.x + pairs.y + pairs.z + pairs.w, lane, 0u);
     if (lane == 0u && block < params.blocks) {
         sums[block] = prefix.total;
     }

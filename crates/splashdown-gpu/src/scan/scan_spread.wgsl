@@ -8,7 +8,7 @@ struct ScanParams {
 
 #bindings
 
-override RUN: u32 = 16u;
+override RUN: u32 = 8u; // at most 8
 override MOST: u32 = 0xffffffffu; // 1 treats every value other than 0 as 1
 override SCANNED: u32 = 0u; // 1 if `sums` already contains prefix sums
 
@@ -25,6 +25,20 @@ fn part_before(block: u32, lane: u32) -> u32 {
     return part;
 }
 
+fn is_in_run(first: u32, i: u32) -> bool {
+    return i < RUN && first + i < params.len;
+}
+
+fn count_at(first: u32, i: u32) -> u32 {
+    return select(0u, min(counts[min(first + i, params.len - 1u)], MOST), is_in_run(first, i));
+}
+
+fn store(first: u32, i: u32, start: u32) {
+    if (is_in_run(first, i)) {
+        starts[first + i] = start;
+    }
+}
+
 @compute @workgroup_size(256)
 fn scan_spread(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -33,19 +47,22 @@ fn scan_spread(
 ) {
     let block = min(linear_group(group, groups), params.blocks);
     let first = (block * 256u + lane) * RUN;
-    let end = min(first + RUN, params.len);
-    var sum = 0u;
-    for (var i = first; i < end; i++) {
-        sum += min(counts[i], MOST);
-    }
-    let inside = workgroup_prefix(sum, lane, 0u);
-    let before = workgroup_prefix(part_before(block, lane), lane, 1u).total;
-    var start = before + inside.before;
-    for (var i = first; i < end; i++) {
-        starts[i] = start;
-        start += min(counts[i], MOST);
-    }
+    // Without loops, whose checks would keep the loads from overlapping.
+    let low = vec4(count_at(first, 0u), count_at(first, 1u), count_at(first, 2u), count_at(first, 3u));
+    let high = vec4(count_at(first, 4u), count_at(first, 5u), count_at(first, 6u), count_at(first, 7u));
+    let pairs = low + high;
+    let found = workgroup_prefix_and_sum(pairs.x + pairs.y + pairs.z + pairs.w, part_before(block, lane), lane);
+    let start = found.sum + found.prefix.before;
+    let next = start + low.x + low.y + low.z + low.w;
+    store(first, 0u, start);
+    store(first, 1u, start + low.x);
+    store(first, 2u, start + low.x + low.y);
+    store(first, 3u, start + low.x + low.y + low.z);
+    store(first, 4u, next);
+    store(first, 5u, next + high.x);
+    store(first, 6u, next + high.x + high.y);
+    store(first, 7u, next + high.x + high.y + high.z);
     if (block + 1u == params.blocks && lane == 0u) {
-        starts[params.len] = before + inside.total;
+        starts[params.len] = found.sum + found.prefix.total;
     }
 }

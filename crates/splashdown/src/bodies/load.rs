@@ -84,6 +84,19 @@ pub enum BodyError {
         /// The particle spacing in m.
         spacing: f32,
     },
+    /// An emitter may create fewer particles than it emits at once.
+    #[error(
+        "emitter {name:?}: max_particles = {most} is less than a layer of its outlet, {layer} particles, so that it would emit \
+         nothing: raise max_particles, or make the outlet smaller"
+    )]
+    LessThanLayer {
+        /// Name of the emitter.
+        name: String,
+        /// Its `max_particles`.
+        most: u32,
+        /// Particles of a layer.
+        layer: u32,
+    },
 }
 
 /// How messages name an object with a mesh, for example `body "raft" (raft.stl)`.
@@ -279,7 +292,8 @@ fn load_one(
             state.inverse_mass = 1.0 / (density * mass.volume);
             let inertia = mass.inertia * *density;
             (state.inertia, state.inertia_products) = parts(inertia);
-            (state.inverse_inertia, state.inverse_inertia_products) = parts(inertia.inverse());
+            (state.inverse_inertia, state.inverse_inertia_products) =
+                parts(mass.inverse_inertia() / *density);
             (state.velocity, state.angular_velocity) = (*velocity, *angular_velocity);
             if let Some(hinge) = hinge {
                 attach_hinge(&mut state, hinge, inertia);

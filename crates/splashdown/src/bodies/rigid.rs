@@ -10,12 +10,15 @@
 //! every step is too slow.
 //!
 //! A dynamic body collides as a ball if it is one, as its convex hull if their volumes are nearly equal, and as a
-//! convex decomposition otherwise. Static and scripted bodies collide as triangle meshes.
+//! convex decomposition otherwise. Static and scripted bodies collide as triangle meshes. Only the corners of a dynamic body
+//! collide with the sides of the domain: parry tests four corners of the nearest face against a plane, on which a prism
+//! with more corners would tip over into the floor.
 
 use glam::{Quat, Vec3, Vec4};
+use rapier3d::math::Matrix;
 use rapier3d::prelude::{
-    CoefficientCombineRule, ColliderBuilder, PhysicsWorld, Pose, RevoluteJointBuilder, RigidBodyBuilder,
-    RigidBodyHandle, Rotation, SharedShape, Vector,
+    CoefficientCombineRule, ColliderBuilder, Group, InteractionGroups, InteractionTestMode, MassProperties,
+    PhysicsWorld, Pose, RigidBodyBuilder, RigidBodyHandle, Rotation, SharedShape, Vector,
 };
 use serde::{Deserialize, Serialize};
 
@@ -143,33 +146,73 @@ fn insert(world: &mut PhysicsWorld, body: &LoadedBody, state: &Body) -> RigidBod
         _ => RigidBodyBuilder::fixed(),
     };
     // Contacts are found before bodies overlap, so that the motion of a step ends at the surface.
-    let builder = builder
+    let mut builder = builder
         .pose(pose(state.position, state.rotation()))
         .can_sleep(false)
         .soft_ccd_prediction(0.5 * state.reach);
-    let handle = world.insert_body(builder);
-    if let Some(axis) = axis(state) {
-        let fixed = world.insert_body(RigidBodyBuilder::fixed().pose(pose(state.position, state.rotation())));
-        world.insert_impulse_joint(fixed, handle, RevoluteJointBuilder::new(to_rapier(axis)));
+    if state.kind == Body::DYNAMIC {
+        // Not those of the shape, which may have another volume.
+        builder = builder.additional_mass_properties(mass_properties(state));
     }
+    let handle = world.insert_body(builder);
     let points: Vec<Vector> =
         body.solid.mesh.vertices.iter().map(|&v| to_rapier(Vec3::from(v) - state.center)).collect();
-    let shape = if state.kind == Body::DYNAMIC {
-        let round = ball(&points, body.solid.mass.volume);
-        round.or_else(|| convex(&points, &body.solid.mesh.triangles, body.solid.mass.volume))
-    } else {
-        SharedShape::trimesh(points.clone(), body.solid.mesh.triangles.clone()).ok()
+    let collide = |world: &mut PhysicsWorld, shape, groups| {
+        let collider = ColliderBuilder::new(shape).density(0.0).collision_groups(groups);
+        let collider = collider.friction(body.contact.friction).restitution(body.contact.restitution);
+        world.insert_collider(collider, Some(handle));
     };
-    // If rapier cannot use the mesh, the body collides as its bounding ball.
-    let shape = shape.unwrap_or_else(|| SharedShape::ball(state.reach));
-    // The density is chosen so that the shape has the mass of the body, whatever the volume of the shape.
-    let volume = shape.mass_properties(1.0).mass();
-    let mass = if state.inverse_mass > 0.0 { 1.0 / state.inverse_mass } else { body.mass() };
-    let density = if volume > 0.0 { mass / volume } else { 1.0 };
-    let collider = ColliderBuilder::new(shape).density(density);
-    let collider = collider.friction(body.contact.friction).restitution(body.contact.restitution);
-    world.insert_collider(collider, Some(handle));
+    if state.kind != Body::DYNAMIC {
+        let mesh = SharedShape::trimesh(points, body.solid.mesh.triangles.clone());
+        collide(world, mesh.unwrap_or_else(|_| SharedShape::ball(state.reach)), between(BODIES, BODIES));
+        return handle;
+    }
+    let volume = body.solid.mass.volume;
+    if let Some(hull) = hull(&points).filter(|_| ball(&points, volume).is_none()) {
+        let corners = corners_of(&hull, state.reach);
+        let shape = convex(hull, &points, &body.solid.mesh.triangles, volume);
+        collide(world, shape, between(BODIES, BODIES));
+        collide(world, corners, between(CORNERS, WALLS));
+    } else {
+        // If rapier cannot use the mesh, the body collides as its bounding ball.
+        let ball = ball(&points, volume).unwrap_or_else(|| SharedShape::ball(state.reach));
+        collide(world, ball, between(BODIES | CORNERS, BODIES | WALLS));
+    }
     handle
+}
+
+/// The groups of the colliders: shapes of bodies, their corners, and the sides of the domain.
+const BODIES: Group = Group::GROUP_1;
+const CORNERS: Group = Group::GROUP_2;
+const WALLS: Group = Group::GROUP_3;
+
+/// The collider is in the first group, and collides with those in the second.
+fn between(own: Group, others: Group) -> InteractionGroups {
+    InteractionGroups::new(own, others, InteractionTestMode::And)
+}
+
+/// The mass of a dynamic body, and its inertia about its position. As on the device, a hinged body has infinite inertia in all
+/// directions but the hinge's, which zeros stand for: with a joint instead, an elastic impact more than doubled its energy.
+fn mass_properties(state: &Body) -> MassProperties {
+    if let Some(axis) = axis(state) {
+        let inertia = Vector::new(0.0, 0.0, state.inertia.element_sum());
+        let frame = Rotation::from_rotation_arc(Vector::Z, to_rapier(axis));
+        return MassProperties::with_principal_inertia_frame(Vector::ZERO, 0.0, inertia, frame);
+    }
+    let inertia = Matrix::from_cols_array(&state.inertia_matrix().to_cols_array());
+    MassProperties::with_inertia_matrix(Vector::ZERO, 1.0 / state.inverse_mass, inertia)
+}
+
+/// Small balls in the corners of a hull, for contacts with planes. The reach is the largest distance of a corner.
+fn corners_of(hull: &SharedShape, reach: f32) -> SharedShape {
+    let radius = 1e-3 * reach;
+    let corners = hull.as_convex_polyhedron().map_or(&[][..], |hull| hull.points());
+    let middle = corners.iter().copied().sum::<Vector>() / corners.len().max(1) as f32;
+    let ball = |&corner: &Vector| {
+        let inside = (middle - corner).normalize_or_zero() * radius;
+        (Pose::from_parts(corner + inside, Rotation::IDENTITY), SharedShape::ball(radius))
+    };
+    SharedShape::compound(corners.iter().map(ball).collect())
 }
 
 /// A ball, if the mesh is a sphere. A hull would collide with its facets, whose normals miss the centre.
@@ -184,18 +227,19 @@ fn ball(points: &[Vector], volume: f32) -> Option<SharedShape> {
     is_sphere.then(|| SharedShape::compound(vec![(place, SharedShape::ball(radius))]))
 }
 
-fn convex(points: &[Vector], triangles: &[[u32; 3]], volume: f32) -> Option<SharedShape> {
-    let hull = hull(points)?;
+/// The hull, or a convex decomposition of the mesh if their volumes differ.
+fn convex(hull: SharedShape, points: &[Vector], triangles: &[[u32; 3]], volume: f32) -> SharedShape {
     if hull.mass_properties(1.0).mass() <= HOLLOW * volume {
-        return Some(hull);
+        return hull;
     }
     let parts = SharedShape::convex_decomposition(points, triangles);
-    let parts = parts.as_compound()?.shapes().iter().filter_map(|(place, part)| {
-        let part = part.as_convex_polyhedron()?;
-        Some((*place, self::hull(part.points())?))
-    });
+    let parts =
+        parts.as_compound().map_or(&[][..], |parts| parts.shapes()).iter().filter_map(|(place, part)| {
+            let part = part.as_convex_polyhedron()?;
+            Some((*place, self::hull(part.points())?))
+        });
     let parts: Vec<_> = parts.collect();
-    if parts.is_empty() { Some(hull) } else { Some(SharedShape::compound(parts)) }
+    if parts.is_empty() { hull } else { SharedShape::compound(parts) }
 }
 
 /// The convex hull of the farthest points in evenly distributed directions. From all points of a fine mesh parry
@@ -237,7 +281,8 @@ fn insert_box(world: &mut PhysicsWorld, domain: &Domain) {
                     .friction(WALL_FRICTION)
                     .friction_combine_rule(CoefficientCombineRule::Min)
                     .restitution(WALL_RESTITUTION)
-                    .restitution_combine_rule(CoefficientCombineRule::Min);
+                    .restitution_combine_rule(CoefficientCombineRule::Min)
+                    .collision_groups(between(WALLS, CORNERS));
                 world.insert_collider(collider, None);
             }
         }

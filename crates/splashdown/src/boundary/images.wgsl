@@ -14,20 +14,12 @@ fn is_side_near(bit: u32, distance: f32) -> u32 {
 fn reflections_near(x: vec3<f32>) -> u32 {
     let low = x - params.domain_min;
     let high = params.domain_max - x;
-    // Bits of the digits that are possible, per axis.
-    var digits = vec3(1u);
-    for (var axis = 0u; axis < 3u; axis++) {
-        digits[axis] |= 2u * is_side_near(2u * axis, low[axis]) + 4u * is_side_near(2u * axis + 1u, high[axis]);
-    }
-    if (all(digits == vec3(1u))) {
-        return 1u;
-    }
-    var found = 0u;
-    for (var k = 0u; k < 27u; k++) {
-        let is_possible = (digits.x >> (k % 3u)) & (digits.y >> (k / 3u % 3u)) & (digits.z >> (k / 9u)) & 1u;
-        found |= is_possible << k;
-    }
-    return found;
+    // Bits of the digits that are possible, per axis. A digit of y stands for three reflections, one of z for nine: a
+    // product repeats the bits of the axes before.
+    let x_bits = 1u + (is_side_near(0u, low.x) << 1u) + (is_side_near(1u, high.x) << 2u);
+    let y_bits = 1u + (is_side_near(2u, low.y) << 3u) + (is_side_near(3u, high.y) << 6u);
+    let z_bits = 1u + (is_side_near(4u, low.z) << 9u) + (is_side_near(5u, high.z) << 18u);
+    return x_bits * y_bits * z_bits;
 }
 
 fn reflection(k: u32) -> Reflection {

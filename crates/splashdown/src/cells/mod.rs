@@ -4,8 +4,9 @@
 //! the indices of the particles. Then the particles are copied, within a cell in the order of their ids, so that the
 //! result does not depend on the order of the invocations. The integration counts the particles for the sort of the
 //! next step; a separate pass counts them where no integration precedes. x is the fastest index of the cells, so that
-//! the 27 cells around a particle form nine contiguous ranges of particles (Dominguez et al. 2011). The bitonic sort of
-//! the thesis is an alternative with the same result.
+//! the cells around a particle form nine contiguous ranges of particles (Dominguez et al. 2011). The cells are as wide as
+//! the support radius along y and z, and shorter along x: see [`Grid`]. The bitonic sort of the thesis is an alternative
+//! with the same result.
 //!
 //! *Why not* a hash: the domain is a box, and a dense grid needs one look-up. *Why not* a radix sort: a counting sort is
 //! a radix sort of a single digit.

@@ -102,6 +102,10 @@ pub(crate) fn nozzle_in(
             (layer, 0, half)
         }
     };
+    let points = layer.points.len() as u32;
+    if let Some(most) = emitter.max_particles.filter(|&most| most < points) {
+        return Err(BodyError::LessThanLayer { name: emitter.name.clone(), most, layer: points });
+    }
     let length = support_radius + spacing;
     let start = emitter.position - length * emitter.direction;
     let back = start + emitter.direction * forward(domain, start, emitter, &layer.points, length, spacing);
@@ -117,7 +121,7 @@ pub(crate) fn nozzle_in(
         half_across: half.x,
         half_up: half.y,
         first_point: 0,
-        points: layer.points.len() as u32,
+        points,
         most: emitter.max_particles.unwrap_or(UNLIMITED).min(UNLIMITED),
         disc,
         interval: layer.interval,

@@ -15,11 +15,11 @@ fn ball_fraction(distance: f32) -> f32 {
 fn ambient(x: vec3<f32>) -> Ambient {
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
-    let cell = cell_of(x);
+    let rows = rows_around(x);
     var found = 0.0;
     var sum = vec4(0.0);
     for (var row = 0u; row < 9u; row++) {
-        let range = row_range(cell, row);
+        let range = row_range(rows, row);
         for (var j = range.x; j < range.y; j++) {
             let d = x - sorted_positions[j].xyz;
             let r2 = dot(d, d);

@@ -112,6 +112,12 @@ pub(super) struct SavedEnergy {
     balance: EnergyBalance,
 }
 
+/// The speed in m/s at which fluid moves by two spacings in the time of the scene. Where nothing drives the fluid, slower motions
+/// are not a burst.
+pub(super) fn noticeable_speed(scene: &Scene) -> f64 {
+    2.0 * f64::from(scene.fluid.particle_spacing) / f64::from(scene.duration).max(f64::MIN_POSITIVE)
+}
+
 impl EnergyAccount {
     pub fn new(scene: &Scene, params: &Params, reference_speed: f64) -> Self {
         let gravity = params.gravity.as_dvec3();
@@ -127,7 +133,8 @@ impl EnergyAccount {
             lowest: gravity.dot(corner),
             shaking: (params.oscillation.as_dvec3(), params.oscillation_rate.into()),
             sources: scene.emitters.iter().map(source).collect(),
-            least: 0.5 * (0.05 * reference_speed).powi(2) + surface_energy(scene),
+            least: 0.5 * (0.05 * reference_speed).max(noticeable_speed(scene)).powi(2)
+                + surface_energy(scene),
             start: None,
             balance: EnergyBalance::default(),
             before: None,

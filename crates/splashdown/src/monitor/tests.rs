@@ -175,3 +175,33 @@ fn overlapping_particles_are_named_as_the_cause_only_if_they_overlap() {
     assert!(message(0.9).contains("overlap at the start"), "{}", message(0.9));
     assert!(!message(1.0).contains("overlap at the start"), "{}", message(1.0));
 }
+
+/// A cloud of particles without gravity that relaxed by half a spacing was reported as a burst.
+#[test]
+fn fluid_that_nothing_drives_may_move_by_a_part_of_a_spacing() {
+    let scene = Scene::builder("box", 1.0)
+        .domain([0.0; 3], [0.8, 0.8, 0.8])
+        .particle_spacing(0.05)
+        .block([0.2; 3], [0.4; 3])
+        .set("scene.gravity", [0.0; 3])
+        .build()
+        .unwrap();
+    let levels = |speed: f32| {
+        let mut simulation = crate::Simulation::new(&scene, &Device::Cpu).unwrap();
+        let mut particles = simulation.particles().unwrap();
+        let mut monitor = simulation.monitor();
+        let mut observe = |time, steps, speed: f32| {
+            particles.velocities.iter_mut().enumerate().for_each(|(i, v)| v[i % 3] = speed);
+            let stats = Stats { steps, ..Stats::default() };
+            let observed =
+                Observed { time, stats: &stats, particles: &particles, bodies: &[], nearest: &|_| None };
+            monitor.observe(observed);
+        };
+        observe(0.0, 0, 0.0);
+        observe(0.1, 1, speed);
+        monitor.level()
+    };
+    // Two spacings in the time of the scene are 0.1 m/s.
+    assert_eq!(levels(0.01), Level::Sound);
+    assert!(levels(1.0) >= Level::Warning, "negative control: ten times that");
+}

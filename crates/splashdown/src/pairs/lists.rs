@@ -10,7 +10,7 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, UVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::Sorted;
@@ -75,12 +75,12 @@ pub(crate) struct NeighbourLists<R> {
     factor: PhantomData<R>,
 }
 
-/// What lists depend on besides the positions: support radius, images, and the origin and the size of the grid.
-type Conditions = (f32, Images, Vec3, [u32; 3]);
+/// What lists depend on besides the positions: support radius, images, and the origin, the size and the slices of the grid.
+type Conditions = (f32, Images, Vec3, UVec3, u32);
 
 fn conditions(sorted: Sorted<'_>) -> Conditions {
     let Sorted { grid, support_radius, images, .. } = sorted;
-    (support_radius, images, grid.origin, [grid.size_x, grid.size_y, grid.size_z])
+    (support_radius, images, grid.origin, grid.size(), grid.slices)
 }
 
 /// Whether all bits are equal.
@@ -279,14 +279,14 @@ impl<const F: usize, const S: usize, P: ListedSum<F, S>, O: Outputs<P::Output>> 
         let support = sorted.support_radius;
         let reach2 = V::splat(support * support);
         let first = sorted.cell_start[cells.start] as usize;
-        for cell in cells {
-            let particles = sorted.run(cell, 1);
+        for cube in cells.step_by(sorted.grid.slices as usize) {
+            let particles = sorted.cube(cube);
             if particles.is_empty() {
                 continue;
             }
             let targets = sorted.positions[particles.clone()].iter().map(|p| p.truncate());
             let region = Region::around(targets, support);
-            let runs = sorted.runs_around(cell);
+            let runs = sorted.runs_around(cube);
             let reflections = sorted.images.near(region.low.into(), region.high.into(), support);
             particles_near.pack::<V>(columns, &runs, &region);
             let reflect = |by: &Reflection, values| pass.reflect(by, values);

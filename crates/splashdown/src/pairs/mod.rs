@@ -93,9 +93,9 @@ impl<'a> Sorted<'a> {
     #[inline(always)]
     pub fn rows_near(&self, [low, high]: [Vec3; 2]) -> impl Iterator<Item = Range<usize>> + Clone + 'a {
         let (sorted, grid) = (*self, self.grid);
-        let size = [grid.size_x, grid.size_y, grid.size_z];
+        let size = grid.size();
         // Casts to integers saturate, so that cells outside the grid become its border cells.
-        let cell = |x: Vec3| ((x - grid.origin) * grid.cells_per_metre).to_array().map(|x| x.floor() as u32);
+        let cell = |x: Vec3| grid.coordinates(x).to_array().map(|x| x.floor() as u32);
         let (first, last) = (cell(low), cell(high));
         let [x, y, z] = std::array::from_fn(|axis| {
             let end = last[axis].min(size[axis] - 1) as usize + 1;
@@ -107,10 +107,21 @@ impl<'a> Sorted<'a> {
         })
     }
 
-    /// The particles of a cell and its 26 neighbours: nine rows of three cells each.
+    /// The particles of the cube of a cell.
     #[inline(always)]
-    pub fn runs_around(&self, cell: usize) -> [Range<usize>; 9] {
-        let (width, plane) = (self.grid.size_x as usize, (self.grid.size_x * self.grid.size_y) as usize);
-        std::array::from_fn(|k| self.run(cell + k / 3 * plane + k % 3 * width - plane - width - 1, 3))
+    pub fn cube(&self, cube: usize) -> Range<usize> {
+        self.run(cube, self.grid.slices as usize)
+    }
+
+    /// The particles of the cube that begins with this cell and of its 26 neighbours: nine rows of three cubes each.
+    #[inline(always)]
+    pub fn runs_around(&self, cube: usize) -> [Range<usize>; 9] {
+        self.grid.runs_around(self.cell_start, cube as u32)
+    }
+
+    /// As [`runs_around`](Self::runs_around), for the cube of a point.
+    #[inline(always)]
+    pub fn runs_around_point(&self, x: Vec3) -> [Range<usize>; 9] {
+        self.grid.runs_around(self.cell_start, self.grid.cube_of(x))
     }
 }

@@ -159,12 +159,12 @@ impl<const F: usize, const S: usize, P: PairSum<F, S>, O: Outputs<P::Output>> Le
     fn run<V: Register>(self) {
         let Self { sorted, columns, candidates, row, mut outputs, pass } = self;
         let first = sorted.cell_start[row.start] as usize;
-        for cell in row {
-            let particles = sorted.run(cell, 1);
+        for cube in row.step_by(sorted.grid.slices as usize) {
+            let particles = sorted.cube(cube);
             if particles.clone().any(|i| pass.wants(i)) {
                 let targets = sorted.positions[particles.clone()].iter().map(|p| p.truncate());
                 let region = Region::around(targets, sorted.support_radius);
-                let runs = sorted.runs_around(cell);
+                let runs = sorted.runs_around(cube);
                 let reflections =
                     sorted.images.near(region.low.into(), region.high.into(), sorted.support_radius);
                 candidates.pack_images::<V>(columns, &runs, &region, reflections, |by, values| {

@@ -50,7 +50,8 @@ impl PairSum<4, 2> for Count<'_> {
 /// and empty cells.
 fn cloud() -> (Grid, Vec<u32>, Vec<Vec4>) {
     let inner = SUPPORT * Vec3::new(6.0, 5.0, 4.0);
-    let grid = Grid::new(Vec3::ZERO, inner, SUPPORT).expect("a small grid");
+    let grid =
+        Grid::new(Vec3::ZERO, inner, SUPPORT).and_then(|grid| grid.with_slices(4)).expect("a small grid");
     let mut state = 1_u32;
     let mut random = move || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

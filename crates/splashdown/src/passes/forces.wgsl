@@ -7,7 +7,6 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
     let pressure = own.y;
     let specific = pressure / (rho * rho);
     let body = body_acceleration(state.time);
-    let cell = cell_of(x);
 
     let support = params.support_radius;
     let scale = 1.0 / support;
@@ -28,8 +27,9 @@ fn acceleration_of(i: u32, x: vec3<f32>, v: vec3<f32>, own: vec2<f32>) -> vec3<f
         let slope = (by.sign - 1.0) * body / params.rest_density;
         let offset = dot(by.shift, body) / params.rest_density;
         a *= by.sign;
+        let rows = rows_of_image(x, own_x);
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             for (var first = range.x; first < range.y; first += CANDIDATES) {
                 for (var bits = neighbour_bits(own_x, first, range.y); bits != 0u; bits &= bits - 1u) {
                     let j = first + firstTrailingBit(bits);

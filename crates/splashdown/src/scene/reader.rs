@@ -358,9 +358,16 @@ impl<'r> Section<'r> {
     pub fn texts<const N: usize>(&self, name: &str) -> Read<[String; N]> {
         self.read(name, |value, kind| match kind {
             Kind::Texts(count, what) if count == N => {
-                let list = value.as_array().filter(|list| list.len() == N).ok_or_else(|| {
-                    wrong_type(value, &format!("a list of {N} texts"), describe_texts(N, what))
-                })?;
+                let list =
+                    value.as_array().ok_or_else(|| wrong_type(value, "a list", describe_texts(N, what)))?;
+                if list.len() != N {
+                    return Err(Wrong {
+                        message: format!("must be a list of {N} texts, not of {}", list.len()),
+                        allowed: describe_texts(N, what),
+                        hint: None,
+                        item: None,
+                    });
+                }
                 let mut texts = std::array::from_fn(|_| String::new());
                 for (text, item) in texts.iter_mut().zip(list) {
                     *text = one_text(item.get_ref(), what)?;
@@ -502,6 +509,12 @@ impl<'r> Section<'r> {
 fn one_text(value: &DeValue<'_>, what: &str) -> Result<String, Wrong> {
     match value {
         DeValue::String(text) if !text.trim().is_empty() => Ok(text.to_string()),
+        DeValue::String(_) => Err(Wrong {
+            message: "must not be empty".to_owned(),
+            allowed: what.to_owned(),
+            hint: None,
+            item: None,
+        }),
         other => Err(wrong_type(other, "a text in quotes", what.to_owned())),
     }
 }

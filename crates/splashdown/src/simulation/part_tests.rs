@@ -76,8 +76,16 @@ fn forces(checkpoint: &Checkpoint, executor: Executor, part: Part) -> Forces {
     executor.run(&recording).unwrap();
     let words = executor.read(sums).unwrap();
     let number = |pair: &[u32; 2]| (u64::from(pair[0]) | u64::from(pair[1]) << 32) as i64 as f64;
+    // The executors sort particles into different cells.
+    let mut by_id: Vec<(u32, Vec3)> = executor
+        .read(fields.ids)
+        .unwrap()
+        .into_iter()
+        .zip(executor.read(fields.accelerations).unwrap().iter().map(|a| a.truncate()))
+        .collect();
+    by_id.sort_unstable_by_key(|(id, _)| *id);
     Forces {
-        accelerations: executor.read(fields.accelerations).unwrap().iter().map(|a| a.truncate()).collect(),
+        accelerations: by_id.into_iter().map(|(_, acceleration)| acceleration).collect(),
         reactions: words.as_chunks().0.iter().map(number).collect(),
     }
 }

@@ -10,7 +10,7 @@ use super::frame::{HOST_IMPLICIT_STEPS, HOST_STEPS, MOST_IMPLICIT_STEPS, MOST_ST
 use super::phases::{HostAction, Phase, Schedule};
 use super::{Simulation, packing};
 use crate::bodies::{Bodies, LoadedBody};
-use crate::cells::{Cells, Grid};
+use crate::cells::Cells;
 use crate::check::Built;
 use crate::flow::{Flow, LoadedFlow};
 use crate::probes::Probes;
@@ -143,14 +143,13 @@ impl Simulation {
     ) -> Result<Self, SimulationError> {
         let scheme = Scheme::new(scene);
         let params = schemes::params(scene, capacity);
-        let (min, max) = (scene.domain.min, scene.domain.max);
-        let grid =
-            Grid::new(min, max, memory::grid_reach(scene)).ok_or_else(|| SimulationError::TooMany {
-                what: "grid cells",
-                given: u64::MAX,
-                allowed: 1 << 31,
-                advice: "make the domain smaller or particle_spacing larger".into(),
-            })?;
+        let grid = memory::grid_of(scene).ok_or_else(|| SimulationError::TooMany {
+            what: "grid cells",
+            given: u64::MAX,
+            allowed: 1 << 31,
+            advice: "make the domain smaller or particle_spacing larger".into(),
+        })?;
+        let grid = if executor.gpu().is_some() { grid.for_gpu(capacity) } else { grid };
         let fields = Fields::with_table(&mut executor, &params, scheme.extras(!loaded.is_empty()), table)?;
         let cells = Cells::new(&mut executor, grid, capacity, scene.solver.sort.into())?;
         let bodies = if loaded.is_empty() {

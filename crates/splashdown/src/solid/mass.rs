@@ -16,6 +16,14 @@ pub struct MassProperties {
     pub inertia: Mat3,
 }
 
+impl MassProperties {
+    /// The inverse of the inertia, in 1/m^5; not finite if there is none. In f64: in f32 the determinant of bodies of a few
+    /// millimetres is zero.
+    pub fn inverse_inertia(&self) -> Mat3 {
+        self.inertia.as_dmat3().inverse().as_mat3()
+    }
+}
+
 /// Largest relative difference between the volumes of the polyhedron formula and the distance field. Beyond
 /// it the mesh overlaps itself or faces the wrong way, and the distance field is used.
 const TOLERANCE: f64 = 0.1;

@@ -102,6 +102,12 @@ pub enum SolidError {
          motion static or scripted"
     )]
     NoVolume,
+    /// Its volume is rounding error.
+    #[error("its volume of {volume:.2e} m^3 is too small for this particle_spacing: check scale")]
+    TooSmall {
+        /// The volume in m^3.
+        volume: f32,
+    },
     /// The grid of the distance field would be too large.
     #[error(
         "its distance field would have {nodes} nodes, {cell_size} m apart: it is too large for this particle_spacing; check scale"
@@ -180,12 +186,18 @@ impl Solid {
     /// Checks that the solid has a volume and an invertible inertia, as a dynamic body needs.
     ///
     /// # Errors
-    /// [`SolidError::NoVolume`] if it does not.
+    /// [`SolidError::NoVolume`] and [`SolidError::TooSmall`] if it does not.
     pub fn require_volume(&self) -> Result<(), SolidError> {
         // Below a thousandth of a cell the volume is rounding error.
         let least = 1e-3 * self.field.cell_size.powi(3);
-        let finite = self.mass.inertia.inverse().is_finite();
-        if self.mass.volume > least && finite { Ok(()) } else { Err(SolidError::NoVolume) }
+        let volume = self.mass.volume;
+        if volume > least && self.mass.inverse_inertia().is_finite() {
+            Ok(())
+        } else if volume > 0.0 && self.report.boundary_edges == 0 {
+            Err(SolidError::TooSmall { volume })
+        } else {
+            Err(SolidError::NoVolume)
+        }
     }
 
     /// Whether a point of the mesh's frame (m) is inside.

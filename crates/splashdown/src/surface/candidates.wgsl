@@ -6,8 +6,8 @@ struct CellRange {
 
 fn cell_range(low: vec3<f32>, high: vec3<f32>) -> CellRange {
     let size = vec3<f32>(vec3<u32>(grid.size_x, grid.size_y, grid.size_z));
-    let first = floor((low - grid.origin) * grid.cells_per_metre);
-    let last = floor((high - grid.origin) * grid.cells_per_metre) + 1.0;
+    let first = floor(coordinates(low));
+    let last = floor(coordinates(high)) + 1.0;
     // The range is empty if the box is outside the grid.
     let zero = vec3<f32>(0.0);
     return CellRange(vec3<u32>(clamp(first, zero, size)), vec3<u32>(clamp(last, zero, size)));

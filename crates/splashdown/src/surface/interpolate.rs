@@ -65,8 +65,7 @@ pub fn interpolate<const N: usize>(
 /// The particle nearest to a point, within two support radii and the cells around that of the
 /// point.
 fn nearest(sorted: &Sorted<'_>, x: Vec3, inverse2: f32) -> Option<usize> {
-    let cell = sorted.grid.cell_of(x) as usize;
-    let distances = sorted.runs_around(cell).into_iter().flatten().map(|j| {
+    let distances = sorted.runs_around_point(x).into_iter().flatten().map(|j| {
         let square = sorted.positions[j].truncate().distance_squared(x) * inverse2;
         (square, j)
     });

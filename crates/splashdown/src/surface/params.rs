@@ -193,8 +193,8 @@ impl Lattice {
         largest_table: u64,
     ) -> Result<Self, SurfaceError> {
         params.check()?;
-        if grid.cell_size() < params.support_radius {
-            let (cell_size, support_radius) = (grid.cell_size(), params.support_radius);
+        if grid.cube_size() < params.support_radius {
+            let (cell_size, support_radius) = (grid.cube_size(), params.support_radius);
             return Err(SurfaceError::GridTooFine { cell_size, support_radius });
         }
         let cell = f64::from(params.cell_size);
@@ -207,8 +207,7 @@ impl Lattice {
         // Part of the reach beyond a ghost cell.
         let beyond = f64::from(search_reach - params.support_radius);
         let low = grid.origin.as_dvec3() - beyond;
-        let extent = 2.0 * beyond
-            + UVec3::new(grid.size_x, grid.size_y, grid.size_z).as_dvec3() * f64::from(grid.cell_size());
+        let extent = 2.0 * beyond + grid.size().as_dvec3() / grid.cells_per_metre.as_dvec3();
         let cell_size = params.cell_size;
         let most = low.abs().max((low + extent).abs()).max_element();
         // The layers of nodes at walls need more bits within a cell.

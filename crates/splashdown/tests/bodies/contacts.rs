@@ -1,7 +1,7 @@
 //! Restitution and friction between solids.
 
 use glam::Vec3;
-use splashdown::scene::{Method, Motion, Scene};
+use splashdown::scene::{Hinge, MeshShape, Method, Motion, Scene};
 use splashdown::{Device, Simulation};
 
 use crate::{body, dry, free, tank};
@@ -94,5 +94,88 @@ fn bodies_exchange_momentum_by_the_mean_of_their_restitutions() {
     // With masses 1 and 3 and a restitution of 0.8: v1 = (1 - 3 * 0.8) / 4 v, v2 = 1.8 / 4 v.
     for (state, expected) in states.iter().zip([-0.35 * toward, 0.45 * toward]) {
         assert!(state.velocity.distance(expected) < 0.03 * toward.x, "{state:?} {expected}");
+    }
+}
+
+/// An upright prism of this many sides, 1 m wide and high, as OBJ.
+fn prism(sides: usize) -> String {
+    let angles = (0..sides).map(|k| std::f32::consts::TAU * k as f32 / sides as f32);
+    let corner = |y: f32, angle: f32| format!("v {} {y} {}\n", 0.5 * angle.cos(), 0.5 * angle.sin());
+    let mut text: String = angles.flat_map(|angle| [corner(-0.5, angle), corner(0.5, angle)]).collect();
+    for k in 0..sides {
+        let next = (k + 1) % sides;
+        text += &format!("f {} {} {} {}\n", 2 * k + 1, 2 * k + 2, 2 * next + 2, 2 * next + 1);
+    }
+    let face = |first: usize| (0..sides).map(move |k| format!(" {}", 2 * k + first)).collect::<String>();
+    text + &format!(
+        "f{}\nf{}\n",
+        face(1),
+        (0..sides).rev().map(|k| format!(" {}", 2 * k + 2)).collect::<String>()
+    )
+}
+
+/// Parry tests four corners of a face against a plane: a cylinder with 24 sides tipped over and sank by 71 % of its height.
+#[test]
+fn a_prism_stands_on_the_floor() {
+    let folder = tempfile::tempdir().unwrap();
+    for sides in [3, 6, 24] {
+        let path = folder.path().join(format!("{sides}.obj"));
+        std::fs::write(&path, prism(sides)).unwrap();
+        let mut scene = room();
+        let size = 0.2;
+        let mut solid = body("prism", "cube", size, Vec3::new(0.8, 0.5 * size + 0.05, 0.3), free(3000.0));
+        solid.mesh.shape = MeshShape::File(path);
+        scene.bodies = vec![solid];
+        let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+        for _ in 0..20 {
+            simulation.advance(0.05).unwrap();
+            let state = simulation.body_states().unwrap()[0];
+            let lowest = (0..sides).flat_map(|k| {
+                let angle = std::f32::consts::TAU * k as f32 / sides as f32;
+                [-0.5, 0.5].map(|y| size * Vec3::new(0.5 * angle.cos(), y, 0.5 * angle.sin()))
+            });
+            let lowest =
+                lowest.map(|x| (state.position + state.orientation * x).y).fold(f32::INFINITY, f32::min);
+            assert!(lowest > -0.03 * size, "{sides} sides: {lowest} m, {state:?}");
+        }
+        let state = simulation.body_states().unwrap()[0];
+        assert!((state.position.y - 0.5 * size).abs() < 0.01 * size, "{sides} sides: {state:?}");
+    }
+}
+
+/// A hinged body has the energy that its restitution leaves. Its centre of mass is not its position: with the velocity of the
+/// hinge for it, each contact left a part of the spin, and the body stood still in the air.
+#[test]
+fn a_pendulum_rebounds_from_a_wall() {
+    for restitution in [0.0, 1.0] {
+        let mut scene = room();
+        let hinge = Vec3::new(0.05, 0.9, 0.3);
+        let mut rod = body("rod", "cube", 1.0, Vec3::new(0.3, 0.9, 0.3), free(2000.0));
+        rod.mesh.scale = Vec3::new(0.5, 0.05, 0.05);
+        rod.contact.restitution = restitution;
+        if let Motion::Dynamic { hinge: place, .. } = &mut rod.motion {
+            *place = Some(Hinge { point: hinge, axis: Vec3::Z, motor: None });
+        }
+        scene.bodies = vec![rod];
+        let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+        let (mut fastest, mut before, mut highest_after) = (0.0_f32, f32::NEG_INFINITY, f32::NEG_INFINITY);
+        for _ in 0..110 {
+            simulation.advance(0.01).unwrap();
+            let state = simulation.body_states().unwrap()[0];
+            let spin = state.angular_velocity.z;
+            (fastest, before) = (fastest.max(spin.abs()), before.max(-spin));
+            if spin > 0.0 {
+                highest_after = highest_after.max(state.position.y);
+            }
+        }
+        // It falls by a quarter turn; its lower end meets the wall at x = 0 shortly before it hangs.
+        assert!(before > 7.0, "the rod does not fall: {before} rad/s");
+        assert!(fastest < 1.03 * before, "{restitution}: {fastest} after {before} rad/s");
+        let height = (highest_after - (hinge.y - 0.25)) / 0.25;
+        if restitution > 0.0 {
+            assert!((0.85..1.02).contains(&height), "an elastic impact: {height} of its height");
+        } else {
+            assert!(height < 0.2, "an inelastic impact: {height} of its height");
+        }
     }
 }

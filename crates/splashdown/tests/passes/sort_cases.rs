@@ -69,15 +69,20 @@ pub fn cases() -> Vec<Case> {
 
 /// The cell of a point by definition, in f64.
 pub fn cell(grid: &Grid, x: glam::Vec3) -> u32 {
-    let at = (x.as_dvec3() - grid.origin.as_dvec3()) * f64::from(grid.cells_per_metre);
-    let index = |axis: usize, size: u32| (at[axis].floor().max(1.0) as u32).min(size - 2);
+    let at = (x.as_dvec3() - grid.origin.as_dvec3()) * grid.cells_per_metre.as_dvec3();
+    let ghosts = [grid.slices, 1, 1];
+    let index = |axis: usize, size: u32| {
+        (at[axis].floor().max(f64::from(ghosts[axis])) as u32).min(size - ghosts[axis] - 1)
+    };
     let [i, j, k] = [index(0, grid.size_x), index(1, grid.size_y), index(2, grid.size_z)];
     (k * grid.size_y + j) * grid.size_x + i
 }
 
 fn count(name: &str, remaining: f32, moved: u32) -> Case {
     let params = params(2.0);
-    let grid = Grid::new(params.domain_min, params.domain_max, params.support_radius).unwrap();
+    let grid = Grid::new(params.domain_min, params.domain_max, params.support_radius)
+        .and_then(|grid| grid.with_slices(4))
+        .unwrap();
     let mut positions: Vec<Vec4> = points(&params, 1300).iter().map(|x| x.extend(0.0)).collect();
     let mut velocities = vec![Vec4::new(1.0, -2.0, 0.5, 1000.0); positions.len()];
     // Particles with every kind of error, among the others.

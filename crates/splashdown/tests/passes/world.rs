@@ -126,7 +126,9 @@ pub fn points(params: &Params, n: usize) -> Vec<Vec3> {
 impl World {
     /// A cloud of about `n` particles, a few of them dead.
     pub fn new(params: Params, n: usize) -> Self {
-        let grid = Grid::new(params.domain_min, params.domain_max, params.support_radius).unwrap();
+        let grid = Grid::new(params.domain_min, params.domain_max, params.support_radius)
+            .and_then(|grid| grid.with_slices(4))
+            .unwrap();
         let mut positions: Vec<Vec4> = points(&params, n).iter().map(|x| x.extend(0.0)).collect();
         let dead = [
             Vec4::new(f32::NAN, 0.1, 0.2, DEAD_NON_FINITE),

@@ -47,11 +47,7 @@ pub(super) fn emit(buffers: EmitBindings<'_>) {
 
 fn is_free(params: &Params, grid: &Grid, cell_start: &[u32], positions: &[Vec4], x: Vec3) -> bool {
     let nearest = NEAREST * params.particle_spacing;
-    let (cell, width) = (grid.cell_of(x) as usize, grid.size_x as usize);
-    let plane = width * grid.size_y as usize;
     let near = |p: &Vec4| p.w == 0.0 && (p.xyz() - x).length_squared() < nearest * nearest;
-    !(0..9).any(|row| {
-        let first = cell + row / 3 * plane + row % 3 * width - plane - width - 1;
-        positions[cell_start[first] as usize..cell_start[first + 3] as usize].iter().any(near)
-    })
+    let mut runs = grid.runs_around(cell_start, grid.cube_of(x)).into_iter();
+    !runs.any(|run| positions[run].iter().any(near))
 }

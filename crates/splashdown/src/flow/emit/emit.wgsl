@@ -10,9 +10,9 @@ const NEAREST: f32 = 0.7;
 
 fn is_free(x: vec3<f32>) -> bool {
     let nearest = NEAREST * params.particle_spacing;
-    let cell = cell_of(x);
+    let rows = rows_around(x);
     for (var row = 0u; row < 9u; row++) {
-        let range = row_range(cell, row);
+        let range = row_range(rows, row);
         for (var j = range.x; j < range.y; j++) {
             let p = positions[j];
             let d = p.xyz - x;

@@ -1,7 +1,7 @@
 //! Creates the particles of the layers that are due ([`emission_schedule`](super::emission_schedule)).
 //!
 //! The search for neighbours uses the sorted order of the step. Particles have moved by at most half a spacing since, or with
-//! `dfsph` by the support radius less the distance of the search (`schemes/dfsph.rs`), so that the 27 cells contain all
+//! `dfsph` by the support radius less the distance of the search (`schemes/dfsph.rs`), so that the 27 cubes contain all
 //! neighbours. If another particle is too near, as at a submerged outlet, the new particle
 //! is not created, and this is counted.
 

@@ -16,12 +16,12 @@ fn normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
         return;
     }
     let x = sorted_positions[i].xyz;
-    let cell = cell_of(x);
+    let rows = rows_around(x);
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
     var sum = vec3(0.0);
     for (var row = 0u; row < 9u; row++) {
-        let range = row_range(cell, row);
+        let range = row_range(rows, row);
         for (var j = range.x; j < range.y; j++) {
             let d = x - sorted_positions[j].xyz;
             let r2 = dot(d, d);

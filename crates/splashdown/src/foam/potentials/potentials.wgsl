@@ -24,13 +24,13 @@ fn potentials(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     }
     let x = sorted_positions[i].xyz;
     let n = foam_normals[i];
-    let cell = cell_of(x);
+    let rows = rows_around(x);
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
     var trapped = 0.0;
     var curvature = 0.0;
     for (var row = 0u; row < 9u; row++) {
-        let range = row_range(cell, row);
+        let range = row_range(rows, row);
         for (var j = range.x; j < range.y; j++) {
             let d = x - sorted_positions[j].xyz;
             let r2 = dot(d, d);

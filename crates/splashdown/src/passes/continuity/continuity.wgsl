@@ -20,7 +20,6 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     let x = sorted_positions[i].xyz;
     let v = sorted_velocities[i].xyz;
     let rho = sorted_velocities[i].w;
-    let cell = cell_of(x);
     let support = params.support_radius;
     let scale = 1.0 / support;
     let factor = params.summed_mass * scale * scale * scale * scale * scale;
@@ -37,8 +36,9 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
         let mixed = by.sign.xxy * by.sign.yzz;
         moment.others *= mixed;
         strain.others *= mixed;
+        let rows = rows_of_image(x, own_x);
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             for (var first = range.x; first < range.y; first += CANDIDATES) {
                 for (var bits = neighbour_bits(own_x, first, range.y); bits != 0u; bits &= bits - 1u) {
                     let j = first + firstTrailingBit(bits);

@@ -31,7 +31,6 @@ fn corrected_acceleration(
     let first = corrections[2u * i];
     let own = Symmetric(specific * first.xyz, specific * corrections[2u * i + 1u].xyz);
     let body = body_acceleration(state.time);
-    let cell = cell_of(x);
 
     let support = params.support_radius;
     let scale = 1.0 / support;
@@ -55,8 +54,9 @@ fn corrected_acceleration(
         let own_stress = Symmetric(own.diagonal, by.sign.xxy * by.sign.yzz * own.others);
         a *= by.sign;
         concentration *= by.sign;
+        let rows = rows_of_image(x, own_x);
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             for (var first = range.x; first < range.y; first += CANDIDATES) {
                 for (var bits = neighbour_bits(own_x, first, range.y); bits != 0u; bits &= bits - 1u) {
                     let j = first + firstTrailingBit(bits);

@@ -14,15 +14,15 @@ fn density(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
         return;
     }
     let x = sorted_positions[i].xyz;
-    let cell = cell_of(x);
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
     var sum = 0.0;
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
         let own = reflected_point(by, x);
+        let rows = rows_of_image(x, own);
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             // Four at a time, so that their positions are loaded together.
             for (var j = range.x; j < range.y; j += 4u) {
                 let last = range.y - 1u;

@@ -19,7 +19,6 @@ fn mueller(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     let rho = densities[i].x;
     let pressure = densities[i].y;
     let body = body_acceleration(state.time);
-    let cell = cell_of(x);
     let support = params.support_radius;
     let scale = 1.0 / support;
     let scale5 = scale * scale * scale * scale * scale;
@@ -31,8 +30,9 @@ fn mueller(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
     var laplacian = 0.0;
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let rows = rows_of_image(x, reflected_point(by, x));
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             for (var j = range.x; j < range.y; j++) {
                 let p = sorted_positions[j].xyz;
                 let image = reflected_point(by, p);

@@ -23,7 +23,7 @@ pub(super) fn list_neighbours(buffers: ListBindings<'_>) {
     let sorted = Sorted::new(reach, grid, cell_start, positions);
     let words_of = |i: usize| {
         let x = positions[i].xyz();
-        let runs = sorted.runs_around(grid.cell_of(x) as usize);
+        let runs = sorted.runs_around_point(x);
         let mut words = vec![0];
         let mut visit = |image: u32, own: Vec3| {
             for j in runs.iter().cloned().flatten() {

@@ -32,14 +32,14 @@ fn list_neighbours(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
         return;
     }
     let x = sorted_positions[i].xyz;
-    let cell = cell_of(x);
     // The first word is the header.
     var list = List(1u, vec4(0u));
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let image = firstTrailingBit(left);
         let own = reflected_point(reflection(image), x);
+        let rows = rows_of_image(x, own);
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             for (var first = range.x; first < range.y; first += CANDIDATES) {
                 for (var bits = neighbour_bits(own, first, range.y); bits != 0u; bits &= bits - 1u) {
                     list = append(list, i, layers, entry_of(first + firstTrailingBit(bits), image));

@@ -8,7 +8,6 @@ struct Visit {
     at: u32, // of the next four entries
     // Without a list, the candidates are searched:
     is_by_rows: bool,
-    cell: u32,
     images: u32, // those to come, and the present one
     row: u32, // the next
     first: u32, // of the present candidates
@@ -19,10 +18,9 @@ struct Visit {
 fn visit_of(i: u32, x: vec3<f32>) -> Visit {
     let has_list = arrayLength(&neighbours) >= params.particle_count;
     let count = select(BY_ROWS, neighbours[i].x, has_list);
-    var visit = Visit(count / 4u + 1u, i, false, 0u, 0u, 0u, 0u, 0u, 0u);
+    var visit = Visit(count / 4u + 1u, i, false, 0u, 0u, 0u, 0u, 0u);
     if (count == BY_ROWS) {
         visit.is_by_rows = true;
-        visit.cell = cell_of(x);
         visit.images = reflections_near(x);
     }
     return visit;
@@ -59,10 +57,11 @@ fn next_four_of_rows(visit: ptr<function, Visit>, i: u32, x: vec3<f32>) -> vec4<
 
 // The next candidates: of the same row, of the next row, or of the next image.
 fn find_candidates(visit: ptr<function, Visit>, x: vec3<f32>) {
+    let own = reflected_point(reflection(firstTrailingBit((*visit).images)), x);
     if ((*visit).first + CANDIDATES < (*visit).end) {
         (*visit).first += CANDIDATES;
     } else if ((*visit).row < 9u) {
-        let range = row_range((*visit).cell, (*visit).row);
+        let range = row_range(rows_of_image(x, own), (*visit).row);
         (*visit).first = range.x;
         (*visit).end = range.y;
         (*visit).row += 1u;
@@ -74,7 +73,6 @@ fn find_candidates(visit: ptr<function, Visit>, x: vec3<f32>) {
         (*visit).end = 0u;
     }
     if ((*visit).first < (*visit).end) {
-        let own = reflected_point(reflection(firstTrailingBit((*visit).images)), x);
         (*visit).bits = neighbour_bits(own, (*visit).first, (*visit).end);
     }
 }

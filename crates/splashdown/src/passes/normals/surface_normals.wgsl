@@ -14,7 +14,6 @@ fn surface_normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
         return;
     }
     let x = sorted_positions[i].xyz;
-    let cell = cell_of(x);
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
     var sum = vec3(0.0);
@@ -22,8 +21,9 @@ fn surface_normals(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_w
         let by = reflection(firstTrailingBit(left));
         let own = reflected_point(by, x);
         sum *= by.sign;
+        let rows = rows_of_image(x, own);
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             for (var j = range.x; j < range.y; j++) {
                 let d = own - sorted_positions[j].xyz;
                 let r2 = dot(d, d);

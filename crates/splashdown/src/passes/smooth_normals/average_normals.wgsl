@@ -17,7 +17,6 @@ fn average_normals(
         return;
     }
     let x = sorted_positions[i].xyz;
-    let cell = cell_of(x);
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
     var sum = vec3(0.0);
@@ -26,8 +25,9 @@ fn average_normals(
         let by = reflection(firstTrailingBit(left));
         let own = reflected_point(by, x);
         sum *= by.sign;
+        let rows = rows_of_image(x, own);
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             for (var j = range.x; j < range.y; j++) {
                 let d = own - sorted_positions[j].xyz;
                 let r2 = dot(d, d);

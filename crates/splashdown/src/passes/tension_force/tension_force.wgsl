@@ -51,7 +51,6 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
     let u = direction(smooth_normals[i].xyz);
     let own = correction_of(i);
     let x = sorted_positions[i].xyz;
-    let cell = cell_of(x);
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
     var turn = 0.0;
@@ -63,8 +62,9 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
         let own_u = by.sign * u;
         let own_correction = Symmetric(own.diagonal, by.sign.xxy * by.sign.yzz * own.others);
         gradient *= by.sign;
+        let rows = rows_of_image(x, own_x);
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             for (var j = range.x; j < range.y; j++) {
                 let d = own_x - sorted_positions[j].xyz;
                 let r2 = dot(d, d);

@@ -14,11 +14,6 @@ var<workgroup> weights: array<vec2<f32>, 64>;
 var<workgroup> offsets: array<vec3<f32>, 64>;
 var<workgroup> drives: array<vec3<f32>, 64>;
 
-fn inner_cell(x: vec3<f32>) -> vec3<u32> {
-    let at = vec3<i32>((x - grid.origin) * grid.cells_per_metre);
-    return vec3<u32>(clamp(at, vec3(1), vec3(i32(grid.size_x), i32(grid.size_y), i32(grid.size_z)) - 2));
-}
-
 @compute @workgroup_size(64)
 fn sample(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -35,8 +30,8 @@ fn sample(
     }
     let support = params.support_radius * select(1.0, COLUMN, probe.kind == PROBE_HEIGHT);
     let end = probe.position + select(0.0, probe.half_along, probe.kind == PROBE_HEIGHT) * probe.normal;
-    let first = inner_cell(min(probe.position, end) - support);
-    let last = inner_cell(max(probe.position, end) + support);
+    let first = indices_of(min(probe.position, end) - support);
+    let last = indices_of(max(probe.position, end) + support);
     let height = last.y - first.y + 1u;
     let rows = height * (last.z - first.z + 1u);
     var weight = vec2(0.0);

@@ -23,7 +23,6 @@ fn start(i: u32) -> f32 {
     }
     let x = sorted_positions[i].xyz;
     let v = sorted_velocities[i].xyz;
-    let cell = cell_of(x);
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
     var viscous_sum = vec3(0.0);
@@ -31,8 +30,9 @@ fn start(i: u32) -> f32 {
     var pressure_sum = vec3(0.0);
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
+        let rows = rows_of_image(x, reflected_point(by, x));
         for (var row = 0u; row < 9u; row++) {
-            let range = row_range(cell, row);
+            let range = row_range(rows, row);
             for (var j = range.x; j < range.y; j++) {
                 let d = x - reflected_point(by, sorted_positions[j].xyz);
                 let r2 = dot(d, d);

@@ -22,10 +22,10 @@ fn classify(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgrou
     var is_kept = false;
     for (var next = 0u; next < count && !is_kept; next++) {
         let x = sorted_positions[blob[next]].xyz;
-        let cell = cell_of(x);
+        let rows = rows_around(x);
         for (var row = 0u; row < 9u && !is_kept; row++) {
             // The row of the particle first: inside the fluid it is sufficient.
-            let range = row_range(cell, (row + 4u) % 9u);
+            let range = row_range(rows, (row + 4u) % 9u);
             for (var j = range.x; j < range.y && !is_kept; j++) {
                 let d = sorted_positions[j].xyz - x;
                 var is_new = dot(d, d) < lattice.link_square;

@@ -33,7 +33,7 @@ impl Links<'_> {
     /// The particles that are linked to one, and itself.
     pub fn of(&self, i: usize) -> impl Iterator<Item = usize> {
         let x = self.positions[i].xyz();
-        let mut runs = self.sorted.runs_around(self.sorted.grid.cell_of(x) as usize);
+        let mut runs = self.sorted.runs_around_point(x);
         // The row of the particle first: inside the fluid it is sufficient.
         runs.rotate_left(4);
         runs.into_iter().flatten().filter(move |&j| {
