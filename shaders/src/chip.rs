@@ -25,9 +25,9 @@ pub const CHIPS: [Chip; 3] = [
     Chip { family: "vega10", product: "RX Vega 64", lanes: 64.0 * 64.0 * 1.546e9, bandwidth: 484e9 },
 ];
 
-/// Candidates of a particle: 27 cells of a support radius of two spacings.
-const CANDIDATES: f64 = 27.0 * 8.0;
-/// Rows of three cells.
+/// Candidates that a warp tests for each particle, at a support radius of two spacings.
+const CANDIDATES: f64 = 155.0;
+/// Rows of cells.
 const ROWS: f64 = 9.0;
 /// Seconds between two dispatches that wait for one another.
 const DISPATCH: f64 = 4e-6;

@@ -3,7 +3,7 @@
 use splashdown_gpu::scan::Scan;
 use splashdown_gpu::{Executor, GpuError, Recording, testing};
 
-const SIZES: [u32; 18] = [
+const SIZES: [u32; 24] = [
     0,
     1,
     2,
@@ -13,11 +13,17 @@ const SIZES: [u32; 18] = [
     255,
     256,
     257,
+    2047,
+    2048,
+    2049,
     4095,
     4096,
     4097,
     16_384,
     16_385,
+    18_431,
+    18_432,
+    18_433,
     65_535,
     65_536,
     1 << 20,

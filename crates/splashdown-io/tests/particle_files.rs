@@ -527,3 +527,21 @@ fn small_files_of_large_content_are_refused() {
     };
     refused("a.vtu", text(100_000_000, "").as_bytes());
 }
+
+/// Scripts that read the arrays of all frames need those of frames without particles too.
+#[test]
+fn an_archive_without_particles_has_all_arrays() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = |particles: &Particles| {
+        let path = folder.path().join("frame.npz");
+        write_particles(&path, particles).unwrap();
+        let archive = zip::ZipArchive::new(fs::File::open(&path).unwrap()).unwrap();
+        let mut names: Vec<String> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
+        names.sort();
+        names
+    };
+    let all = ["densities.npy", "ids.npy", "positions.npy", "pressures.npy", "velocities.npy"];
+    assert_eq!(names(&Particles::default()), all);
+    let unknown = Particles::from_positions(vec![[0.0; 3]]);
+    assert_eq!(names(&unknown), ["positions.npy"], "negative control: unknown quantities have no array");
+}

@@ -83,7 +83,7 @@ fn after_a_step(spacing: &str, executor: &mut Executor) -> Result<(u32, BufferSe
     fields.make_accelerations(executor)?;
     let grid =
         Grid::new(scene.domain.min, scene.domain.max, params.support_radius).ok_or("too many cells")?;
-    let cells = Cells::new(executor, grid.for_gpu(n), n, scene.solver.sort.into())?;
+    let cells = Cells::new(executor, grid.for_gpu(n, u64::MAX), n, scene.solver.sort.into())?;
     let noise =
         |i: usize| 0.2 * params.particle_spacing * (testing::noise(i as u32) as f32 / u32::MAX as f32 - 0.5);
     let positions: Vec<Vec4> = lattice

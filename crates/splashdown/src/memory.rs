@@ -92,8 +92,8 @@ pub fn memory_forecast_of(scene: &Scene, inventory: &Inventory) -> u64 {
     forecast(scene, inventory.particles)
 }
 
-/// The bytes that the search for neighbours takes in addition to [`memory_forecast`], for a number of particles, which depend on
-/// the device: lists of neighbours for `dfsph`, and on a GPU the cells of divided cubes ([`Grid`]).
+/// The bytes that the search for neighbours takes in addition to [`memory_forecast`], for a number of particles. They depend on the
+/// device: lists of neighbours for `dfsph`, and on a GPU the cells of divided cubes ([`Grid`]).
 ///
 /// On the CPU, where `gpu_buffer` is `None`, a neighbour takes 8 bytes, and a sphere of the support radius contains 33
 /// at a support ratio of two. An implicit viscosity has lists of its own. On a GPU, whose largest buffer has
@@ -107,7 +107,8 @@ pub fn neighbour_search_forecast(scene: &Scene, particles: u64, gpu_buffer: Opti
         let layers = if extras.implicit { list_layers(ratio, particles, largest) } else { 0 };
         let lists = particles.saturating_mul(size_of::<UVec4>() as u64 * layers);
         let count = u32::try_from(particles).unwrap_or(u32::MAX);
-        let cells = grid_of(scene).map_or(0, |grid| grid.for_gpu(count).cell_count - grid.cell_count);
+        let cells =
+            grid_of(scene).map_or(0, |grid| grid.for_gpu(count, largest).cell_count - grid.cell_count);
         return lists.saturating_add(u64::from(cells) * PER_CELL);
     }
     let lists = u64::from(extras.implicit) + u64::from(extras.viscous);
@@ -169,7 +170,7 @@ pub(crate) fn grid_of(scene: &Scene) -> Option<Grid> {
     Grid::new(scene.domain.min, scene.domain.max, grid_reach(scene))
 }
 
-/// The smallest size of a grid cell in metres: the simulation and the surface use the same grid.
+/// The smallest size of a cube of the grid in metres: the simulation and the surface use the same grid.
 fn grid_reach(scene: &Scene) -> f32 {
     let spacing = scene.fluid.particle_spacing;
     scene.solver.support_radius(spacing).max(scene.surface.support_ratio * spacing)
@@ -198,6 +199,27 @@ mod tests {
         let grid = Grid::new(Vec3::ZERO, Vec3::ONE, 0.1).unwrap();
         Cells::new(&mut executor, grid, particles, sort.into()).unwrap();
         executor.bytes()
+    }
+
+    #[test]
+    fn the_search_on_a_gpu_takes_the_cells_of_divided_cubes() {
+        let text = "[scene]\nname = \"box\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\n\
+                    particle_spacing = 0.05\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n\
+                    [solver]\nmethod = \"wcsph\"\n";
+        let scene = Scene::parse(text, "box.toml").unwrap();
+        let grid = grid_of(&scene).unwrap();
+        let allocated = |grid| {
+            let mut executor = Executor::from(CpuExecutor::new());
+            let before = executor.bytes();
+            let cells = Cells::new(&mut executor, grid, 1000, crate::cells::Sort::Counting).unwrap();
+            let starts = cells.cell_start.len() + cells.cell_counts.len();
+            assert!(executor.bytes() > before);
+            4 * u64::from(starts)
+        };
+        let more = allocated(grid.for_gpu(1000, u64::MAX)) - allocated(grid);
+        assert_eq!(neighbour_search_forecast(&scene, 1000, Some(u64::MAX)), more);
+        assert_eq!(neighbour_search_forecast(&scene, 1000, None), 0, "the CPU sorts into cubes");
+        assert!(more > 0);
     }
 
     #[test]

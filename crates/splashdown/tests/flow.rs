@@ -156,6 +156,20 @@ fn a_sink_removes_all_particles_inside_and_frees_their_slots() {
 }
 
 #[test]
+fn a_limit_below_one_layer_is_refused() {
+    let result = |most| {
+        let mut scene = empty();
+        scene.emitters = vec![Emitter { max_particles: Some(most), ..emitter() }];
+        Simulation::with_executor(&scene, Executor::from(CpuExecutor::new())).map(drop)
+    };
+    let refused = result(1).unwrap_err().to_string();
+    let layer = refused.split("outlet, ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    let layer: u32 = layer.parse().unwrap();
+    assert!(layer > 1 && refused.contains("raise max_particles"), "{refused}");
+    assert!(result(layer - 1).is_err() && result(layer).is_ok());
+}
+
+#[test]
 fn the_particle_limit_is_respected_and_a_full_buffer_is_reported_once() {
     let few = Emitter { max_particles: Some(300), ..emitter() };
     let scene = {

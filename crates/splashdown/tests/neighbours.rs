@@ -198,7 +198,7 @@ fn clouds() -> Vec<(String, Vec<Vec3>)> {
     let border =
         |i: u32, j: u32, k: u32| grid.origin + Vec3::new(i as f32, j as f32, k as f32) / grid.cells_per_metre;
     let mut borders = Vec::new();
-    // Without most of the points outside: the order of more than a thousand does not matter.
+    // Without points outside: the sort does not order more than 1,024 removed particles, and other clouds contain them.
     for i in grid.slices..=grid.size_x - grid.slices {
         for j in 1..grid.size_y {
             borders.extend((1..grid.size_z).map(|k| border(i, j, k)));

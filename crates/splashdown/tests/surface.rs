@@ -261,7 +261,8 @@ fn a_missing_and_a_flipped_triangle_are_detected() {
 
 /// One particle per cell of a row, in the layout of a simulation.
 fn simulation_input(executor: &mut Executor, capacity: u32) -> SurfaceInput {
-    let grid = Grid::new(Vec3::ZERO, Vec3::new(1.0, 0.2, 0.2), 2.0 * SPACING).unwrap().for_gpu(4096);
+    let grid =
+        Grid::new(Vec3::ZERO, Vec3::new(1.0, 0.2, 0.2), 2.0 * SPACING).unwrap().for_gpu(4096, u64::MAX);
     let mut particles: Vec<_> = (0..10)
         .flat_map(|i| [0.03, 0.07].map(|y| Vec3::new(0.05 + 0.1 * i as f32, y, 0.05).extend(f32::NAN)))
         .collect();

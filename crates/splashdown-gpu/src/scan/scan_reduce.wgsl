@@ -8,7 +8,7 @@ struct ScanParams {
 
 #bindings
 
-override RUN: u32 = 8u;
+override RUN: u32 = 8u; // at most 8
 override MOST: u32 = 0xffffffffu; // 1 treats every value other than 0 as 1
 
 fn count_at(first: u32, i: u32) -> u32 {

@@ -13,8 +13,8 @@ gpu_struct! {
     /// exist. A cube is divided along x into slices, which are the cells. Cell number = (z * size_y + y) * size_x + x, x
     /// fastest, so that the cells of a cube follow one another.
     ///
-    /// With cells that are short along x, the particles near a point are a small part of a row of cells. A GPU tests 155
-    /// candidates instead of 216 with four slices and a support radius of two spacings.
+    /// With cells that are short along x, the particles near a point are a small part of a row of cells: with four slices
+    /// and a support radius of two spacings a warp of a GPU tests 155 candidates instead of 216.
     pub struct Grid {
         /// Lower corner of the first ghost cube in metres.
         origin: Vec3,
@@ -39,20 +39,20 @@ gpu_struct! {
 /// it.
 const SLACK: f32 = 1.0001;
 
-/// One more than the largest number of cells.
-const MOST_CELLS: f64 = (1_u32 << 31) as f64;
+/// The smallest number of cells that is too large.
+const CELL_LIMIT: f64 = (1_u32 << 31) as f64;
 
 /// The largest number of cells per particle for which cubes are divided.
 const CELLS_PER_PARTICLE: u32 = 8;
 /// The number of particles that counts if there are fewer.
-const FEWEST: u32 = 1 << 12;
+const LEAST_PARTICLES: u32 = 1 << 12;
 
 impl Grid {
-    /// The grid of a box for kernels of this support, whose cells are cubes; `None` if it has more than 2^31.
+    /// The grid of a box for kernels of this support, whose cells are cubes; `None` if it has 2^31 or more.
     pub fn new(min: Vec3, max: Vec3, support_radius: f32) -> Option<Self> {
         let cube = support_radius * SLACK;
         let cubes = ((max - min).as_dvec3() / f64::from(cube)).ceil().max(DVec3::ONE) + 2.0;
-        (cubes.element_product() < MOST_CELLS).then_some(Self {
+        (cubes.element_product() < CELL_LIMIT).then_some(Self {
             origin: min - cube,
             cell_count: cubes.element_product() as u32,
             cells_per_metre: Vec3::splat(1.0 / cube),
@@ -64,20 +64,23 @@ impl Grid {
         })
     }
 
-    /// A grid of the same cubes, with four slices each for a GPU, or fewer where there would be more than eight cells per
-    /// particle.
+    /// A grid of the same cubes, with four slices each for a GPU that binds at most `largest_buffer` bytes, or fewer where there
+    /// would be more than eight cells per particle, or where [`cell_counts`](super::Cells::cell_counts) would not fit.
     #[must_use]
-    pub fn for_gpu(self, particles: u32) -> Self {
-        let most = u64::from(particles.max(FEWEST)) * u64::from(CELLS_PER_PARTICLE);
-        let fits = |slices: &u32| u64::from(self.cell_count / self.slices) * u64::from(*slices) <= most;
+    pub fn for_gpu(self, particles: u32, largest_buffer: u64) -> Self {
+        let most = u64::from(particles.max(LEAST_PARTICLES)) * u64::from(CELLS_PER_PARTICLE);
+        let fits = |slices: &u32| {
+            let cells = u64::from(self.cell_count / self.slices) * u64::from(*slices);
+            cells <= most && 4 * (cells + 2 + u64::from(particles)) <= largest_buffer
+        };
         [4, 2].into_iter().find(fits).and_then(|slices| self.with_slices(slices)).unwrap_or(self)
     }
 
-    /// A grid of the same cubes with this many slices each; `None` if it has more than 2^31 cells.
+    /// A grid of the same cubes with this many slices each; `None` if it has 2^31 cells or more.
     pub fn with_slices(self, slices: u32) -> Option<Self> {
         let cubes = self.cell_count / self.slices;
         let columns = self.size_x / self.slices;
-        (f64::from(cubes) * f64::from(slices) < MOST_CELLS).then(|| Self {
+        (f64::from(cubes) * f64::from(slices) < CELL_LIMIT).then(|| Self {
             cell_count: cubes * slices,
             cells_per_metre: self.cells_per_metre.with_x(self.cells_per_metre.y * slices as f32),
             size_x: columns * slices,
@@ -164,12 +167,16 @@ mod tests {
     fn cubes_are_divided_where_there_are_enough_particles() {
         let slices = |size, particles| {
             let cubes = Grid::new(Vec3::ZERO, Vec3::splat(size), 1.0).unwrap();
-            let divided = cubes.for_gpu(particles);
+            let divided = cubes.for_gpu(particles, u64::MAX);
             assert_eq!(divided, cubes.with_slices(divided.slices).unwrap());
             divided.slices
         };
         assert_eq!(slices(9.5, 0), 4, "small grids are always divided");
         // 100^3 cubes with the ghosts.
         assert_eq!([500_000, 499_999, 250_000, 249_999].map(|n| slices(97.5, n)), [4, 2, 2, 1]);
+        // Buffers of the cells and of a million particles.
+        let cubes = Grid::new(Vec3::ZERO, Vec3::splat(97.5), 1.0).unwrap();
+        let slices = |megabytes: u64| cubes.for_gpu(1_000_000, megabytes * 1_000_000).slices;
+        assert_eq!([21, 19, 13, 11].map(slices), [4, 2, 2, 1]);
     }
 }

@@ -5,7 +5,7 @@
 //! result does not depend on the order of the invocations. The integration counts the particles for the sort of the
 //! next step; a separate pass counts them where no integration precedes. x is the fastest index of the cells, so that
 //! the cells around a particle form nine contiguous ranges of particles (Dominguez et al. 2011). The cells are as wide as
-//! the support radius along y and z, and shorter along x: see [`Grid`]. The bitonic sort of the thesis is an alternative
+//! the support radius, and on GPUs shorter along x: see [`Grid`]. The bitonic sort of the thesis is an alternative
 //! with the same result.
 //!
 //! *Why not* a hash: the domain is a box, and a dense grid needs one look-up. *Why not* a radix sort: a counting sort is

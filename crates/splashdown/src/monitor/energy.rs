@@ -15,7 +15,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use splashdown_io::Particles;
 
-use crate::scene::{Scene, SurfaceTension};
+use crate::scene::{MIN_SPEED, Scene, SurfaceTension};
 use crate::state::Params;
 
 /// The energy of the fluid in a frame, and what has changed it since the start; all in J.
@@ -112,9 +112,12 @@ pub(super) struct SavedEnergy {
     balance: EnergyBalance,
 }
 
-/// The speed in m/s at which fluid moves by two spacings in the time of the scene. Where nothing drives the fluid, slower motions
-/// are not a burst.
-pub(super) fn noticeable_speed(scene: &Scene) -> f64 {
+/// The speed in m/s below which motions are not a burst where nothing drives the fluid: that at which it moves by two spacings
+/// in the time of the scene. Zero where something drives it.
+pub(super) fn noticeable_speed(scene: &Scene, reference_speed: f64) -> f64 {
+    if reference_speed > f64::from(MIN_SPEED) {
+        return 0.0;
+    }
     2.0 * f64::from(scene.fluid.particle_spacing) / f64::from(scene.duration).max(f64::MIN_POSITIVE)
 }
 
@@ -133,7 +136,7 @@ impl EnergyAccount {
             lowest: gravity.dot(corner),
             shaking: (params.oscillation.as_dvec3(), params.oscillation_rate.into()),
             sources: scene.emitters.iter().map(source).collect(),
-            least: 0.5 * (0.05 * reference_speed).max(noticeable_speed(scene)).powi(2)
+            least: 0.5 * (0.05 * reference_speed).max(noticeable_speed(scene, reference_speed)).powi(2)
                 + surface_energy(scene),
             start: None,
             balance: EnergyBalance::default(),

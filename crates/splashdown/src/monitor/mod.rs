@@ -145,7 +145,8 @@ impl Monitor {
         let attraction = 4.0 * energy::surface_energy(scene);
         let reference_speed =
             (f64::from(initial + 2.0 * fall.max(whole)) + attraction).sqrt() + f64::from(shaking);
-        let reference_speed = reference_speed.max(energy::noticeable_speed(scene));
+        let noticeable = energy::noticeable_speed(scene, derived.reference_speed.into());
+        let reference_speed = reference_speed.max(noticeable);
         Self {
             params: *params,
             context: Context::new(scene, params.sound_speed, derived.reference_speed),

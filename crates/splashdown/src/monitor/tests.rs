@@ -186,6 +186,8 @@ fn fluid_that_nothing_drives_may_move_by_a_part_of_a_spacing() {
         .set("scene.gravity", [0.0; 3])
         .build()
         .unwrap();
+    let noticeable = |reference_speed| energy::noticeable_speed(&scene, reference_speed);
+    assert!((noticeable(0.01_f32.into()) - 0.1).abs() < 1e-6 && noticeable(0.02) == 0.0);
     let levels = |speed: f32| {
         let mut simulation = crate::Simulation::new(&scene, &Device::Cpu).unwrap();
         let mut particles = simulation.particles().unwrap();

@@ -261,7 +261,7 @@ impl Outputs<()> for Nothing {
 struct Cells<'a, const F: usize, const S: usize, P, O> {
     sorted: Sorted<'a>,
     columns: &'a Columns<F>,
-    /// Particles and images near a cell.
+    /// Particles and images near a cube.
     candidates: &'a mut [Candidates<F>; 2],
     cells: Range<usize>,
     list: &'a mut List,

@@ -10,14 +10,14 @@
 //!
 //! # How it works
 //! The particles' quantities are stored in columns, one array per quantity ([`Columns`]). The
-//! neighbours of a cell lie in nine contiguous runs of particles. Those within reach of the
-//! bounding box of the targets in the cell are packed into small columns once ([`Candidates`]): on
+//! neighbours of a cube of the grid lie in nine contiguous runs of particles. Those within reach of the
+//! bounding box of the targets in the cube are packed into small columns once ([`Candidates`]): on
 //! average 112 of 183 particles, at a support radius of two spacings. Every target then processes
 //! the candidates in whole registers without a branch: particles beyond the support contribute
 //! zero, and the end is padded with particles far away.
 //!
 //! Sums are accumulated in a fixed number of lanes, and the candidates of a target depend only on
-//! the targets in its cell. Results are therefore bit-identical for any number of threads and any
+//! the targets in its cube. Results are therefore bit-identical for any number of threads and any
 //! width of the registers.
 //!
 //! # Why not the other way
@@ -61,7 +61,7 @@ pub(crate) struct Sorted<'a> {
     pub cell_start: &'a [u32],
     /// Positions in metres, sorted by cell; w is ignored.
     pub positions: &'a [Vec4],
-    /// Radius within which particles are neighbours, in metres; at most the cell size.
+    /// Radius within which particles are neighbours, in metres; at most the size of a cube.
     pub support_radius: f32,
     /// Closed sides behind which the particles have images.
     pub images: Images,
@@ -107,7 +107,7 @@ impl<'a> Sorted<'a> {
         })
     }
 
-    /// The particles of the cube of a cell.
+    /// The particles of the cube that begins with this cell.
     #[inline(always)]
     pub fn cube(&self, cube: usize) -> Range<usize> {
         self.run(cube, self.grid.slices as usize)

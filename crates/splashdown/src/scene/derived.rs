@@ -11,7 +11,7 @@ use super::types::{Scene, Shape};
 /// cent (Monaghan 1994).
 const SOUND_RATIO: f32 = 10.0;
 /// Lower bound of the reference speed in m/s, for scenes in which nothing drives the fluid.
-const MIN_SPEED: f32 = 0.01;
+pub(crate) const MIN_SPEED: f32 = 0.01;
 
 /// Quantities derived from a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]

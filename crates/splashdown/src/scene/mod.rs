@@ -54,7 +54,7 @@ mod things;
 mod types;
 mod values;
 
-pub(crate) use derived::Reach;
+pub(crate) use derived::{MIN_SPEED, Reach};
 pub(crate) use geometry::grouped;
 pub(crate) use parse::{outlet_outside, parse};
 pub(crate) use reader::{Reported, Section};

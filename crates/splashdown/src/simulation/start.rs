@@ -146,10 +146,13 @@ impl Simulation {
         let grid = memory::grid_of(scene).ok_or_else(|| SimulationError::TooMany {
             what: "grid cells",
             given: u64::MAX,
-            allowed: 1 << 31,
+            allowed: (1 << 31) - 1,
             advice: "make the domain smaller or particle_spacing larger".into(),
         })?;
-        let grid = if executor.gpu().is_some() { grid.for_gpu(capacity) } else { grid };
+        let grid = match executor.gpu() {
+            Some(gpu) => grid.for_gpu(capacity, gpu.largest_buffer()),
+            None => grid,
+        };
         let fields = Fields::with_table(&mut executor, &params, scheme.extras(!loaded.is_empty()), table)?;
         let cells = Cells::new(&mut executor, grid, capacity, scene.solver.sort.into())?;
         let bodies = if loaded.is_empty() {

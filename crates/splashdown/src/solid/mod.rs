@@ -102,11 +102,13 @@ pub enum SolidError {
          motion static or scripted"
     )]
     NoVolume,
-    /// Its volume is rounding error.
-    #[error("its volume of {volume:.2e} m^3 is too small for this particle_spacing: check scale")]
+    /// It is so small that its volume is rounding error.
+    #[error(
+        "it is {extent} m long, which is too small for this particle_spacing: check scale, or refine particle_spacing"
+    )]
     TooSmall {
-        /// The volume in m^3.
-        volume: f32,
+        /// Its longest edge in m.
+        extent: f32,
     },
     /// The grid of the distance field would be too large.
     #[error(
@@ -191,10 +193,12 @@ impl Solid {
         // Below a thousandth of a cell the volume is rounding error.
         let least = 1e-3 * self.field.cell_size.powi(3);
         let volume = self.mass.volume;
+        let (low, high) = bounds(&self.mesh);
+        let extent = (high - low).max_element();
         if volume > least && self.mass.inverse_inertia().is_finite() {
             Ok(())
-        } else if volume > 0.0 && self.report.boundary_edges == 0 {
-            Err(SolidError::TooSmall { volume })
+        } else if volume > 0.0 && self.report.boundary_edges == 0 && extent < 4.0 * self.field.cell_size {
+            Err(SolidError::TooSmall { extent })
         } else {
             Err(SolidError::NoVolume)
         }

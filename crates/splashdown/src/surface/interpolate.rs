@@ -62,7 +62,7 @@ pub fn interpolate<const N: usize>(
     Ok(results)
 }
 
-/// The particle nearest to a point, within two support radii and the cells around that of the
+/// The particle nearest to a point, within two support radii and the cubes around that of the
 /// point.
 fn nearest(sorted: &Sorted<'_>, x: Vec3, inverse2: f32) -> Option<usize> {
     let distances = sorted.runs_around_point(x).into_iter().flatten().map(|j| {

@@ -204,7 +204,7 @@ impl Lattice {
                 [MAX_STRETCH, MAX_STRETCH + MAX_SHIFT].map(|ratio| ratio * params.support_radius)
             }
         };
-        // Part of the reach beyond a ghost cell.
+        // Part of the reach beyond a ghost cube.
         let beyond = f64::from(search_reach - params.support_radius);
         let low = grid.origin.as_dvec3() - beyond;
         let extent = 2.0 * beyond + grid.size().as_dvec3() / grid.cells_per_metre.as_dvec3();

@@ -1,8 +1,8 @@
 //! Restitution and friction between solids.
 
 use glam::Vec3;
-use splashdown::scene::{Hinge, MeshShape, Method, Motion, Scene};
-use splashdown::{Device, Simulation};
+use splashdown::scene::{Hinge, MeshShape, Method, Motion, Scene, Shape};
+use splashdown::{Device, Simulation, SimulationError};
 
 use crate::{body, dry, free, tank};
 
@@ -178,4 +178,28 @@ fn a_pendulum_rebounds_from_a_wall() {
             assert!(height < 0.2, "an inelastic impact: {height} of its height");
         }
     }
+}
+
+/// In f32 the determinant of the inertia of a ball of 4 mm is zero: it was refused as a body without a volume.
+#[test]
+fn small_bodies_have_a_mass() {
+    let drop = |scale: f32, spacing: f32| {
+        let mut scene = tank(spacing, [0.02, 0.02, 0.02], 0.002);
+        dry(&mut scene);
+        if let Shape::Box { size, .. } = &mut scene.fluid.blocks[0].shape {
+            *size = Vec3::splat(0.002);
+        }
+        scene.bodies = vec![body("ball", "sphere", scale, Vec3::new(0.01, 0.01, 0.01), free(2000.0))];
+        let mut simulation = Simulation::new(&scene, &Device::Cpu)?;
+        simulation.advance(0.02)?;
+        Ok::<_, SimulationError>(simulation.body_states()?[0].position.y)
+    };
+    // The model is 0.2 m across: balls of 4 and 1 mm.
+    for scale in [0.02, 0.005] {
+        let fallen = 0.01 - drop(scale, 5e-4).unwrap();
+        assert!((fallen / (0.5 * GRAVITY * 4e-4) - 1.0).abs() < 0.2, "{scale}: {fallen} m");
+    }
+    // A ball of 20 um at a spacing of 0.5 mm.
+    let refused = drop(1e-4, 5e-4).unwrap_err().to_string();
+    assert!(refused.contains("too small for this particle_spacing"), "{refused}");
 }

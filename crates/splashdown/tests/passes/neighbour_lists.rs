@@ -82,8 +82,16 @@ fn meaningful(world: &World, data: &Data) -> Vec<UVec4> {
 
 pub fn cases() -> Vec<Case> {
     let open = Params { closed: 0b110111, ..params(2.5) };
-    let cases = [("closed", params(2.0), 60), ("few layers", params(2.0), 12), ("open above", open, 20)];
-    cases.into_iter().map(|(name, params, layers)| list(name, World::new(params, 1500), layers)).collect()
+    let worlds = [
+        ("closed", World::new(params(2.0), 1500), 60),
+        ("few layers", World::new(params(2.0), 1500), 12),
+        ("open above", World::new(open, 1500), 20),
+        ("whole cubes", World::with_slices(params(2.0), 1500, 1), 60),
+        ("halved cubes", World::with_slices(params(2.0), 1500, 2), 60),
+        ("borders of cells", World::on_borders(params(2.0), 4), 60),
+        ("borders of halved cubes", World::on_borders(params(2.0), 2), 60),
+    ];
+    worlds.into_iter().map(|(name, world, layers)| list(name, world, layers)).collect()
 }
 
 fn list(name: &str, world: World, layers: usize) -> Case {

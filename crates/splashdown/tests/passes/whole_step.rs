@@ -53,8 +53,9 @@ impl Rig {
             fields.make_accelerations(&mut executor).unwrap();
         }
         executor.write(fields.counters, &[0; StepCounters::WORDS]).unwrap();
-        let grid =
-            Grid::new(scene.domain.min, scene.domain.max, params.support_radius).unwrap().for_gpu(4096);
+        let grid = Grid::new(scene.domain.min, scene.domain.max, params.support_radius)
+            .unwrap()
+            .for_gpu(4096, u64::MAX);
         let cells = Cells::new(&mut executor, grid, n, scene.solver.sort.into()).unwrap();
         let nudge = |i: usize| 0.01 * (testing::noise(i as u32) as f32 / u32::MAX as f32 - 0.5);
         let (x, v) = (&particles.positions, &particles.velocities);

@@ -126,10 +126,40 @@ pub fn points(params: &Params, n: usize) -> Vec<Vec3> {
 impl World {
     /// A cloud of about `n` particles, a few of them dead.
     pub fn new(params: Params, n: usize) -> Self {
+        Self::with_slices(params, n, 4)
+    }
+
+    /// The same in cubes with this many slices.
+    pub fn with_slices(params: Params, n: usize, slices: u32) -> Self {
+        Self::of_points(params, &points(&params, n), slices)
+    }
+
+    /// Particles on the borders of cells, and neighbours whose distance along an axis is the support radius up to rounding.
+    pub fn on_borders(params: Params, slices: u32) -> Self {
+        let grid = Grid::new(params.domain_min, params.domain_max, params.support_radius).unwrap();
+        let size = grid.size();
+        let mut points = Vec::new();
+        for i in slices..=size.x * slices - slices {
+            for (j, k) in (1..size.y).flat_map(|j| (1..size.z).map(move |k| (j, k))) {
+                let cubes = Vec3::new(i as f32 / slices as f32, j as f32, k as f32);
+                points.push(grid.origin + cubes / grid.cells_per_metre);
+            }
+        }
+        let near = points.iter().step_by(7).enumerate().map(|(n, &x)| {
+            let factor = 1.0 + 1e-6 * [-3.0, -1.0, 0.0, 1.0, 3.0][n % 5];
+            x + Vec3::AXES[n % 3] * params.support_radius * factor
+        });
+        points.extend(near.collect::<Vec<_>>());
+        points.retain(|x| x.cmpge(params.domain_min).all() && x.cmple(params.domain_max).all());
+        Self::of_points(params, &points, slices)
+    }
+
+    fn of_points(params: Params, points: &[Vec3], slices: u32) -> Self {
         let grid = Grid::new(params.domain_min, params.domain_max, params.support_radius)
-            .and_then(|grid| grid.with_slices(4))
+            .and_then(|grid| grid.with_slices(slices))
             .unwrap();
-        let mut positions: Vec<Vec4> = points(&params, n).iter().map(|x| x.extend(0.0)).collect();
+        let n = points.len();
+        let mut positions: Vec<Vec4> = points.iter().map(|x| x.extend(0.0)).collect();
         let dead = [
             Vec4::new(f32::NAN, 0.1, 0.2, DEAD_NON_FINITE),
             Vec4::new(9.0, 9.0, 9.0, DEAD_ESCAPED),

@@ -156,7 +156,8 @@ fn errors_in_bodies_name_the_allowed_values() {
         ),
         ("name = \"a\"\nmesh = \"cube\"\nscale = \"0.1\"", &["without quotes"]),
         ("name = \"a\"\nmesh = \"cube\"\nscale = -1", &["body[0].scale is -1", "\"ft\""]),
-        ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"t\"]", &["3 texts"]),
+        ("name = \"a\"\nmesh = \"cube\"\nturn = [\"0\", \"t\"]", &["a list of 3 texts, not of 2"]),
+        ("name = \"a\"\nmesh = \"cube\"\nmove = [\"\", \"0\", \"0\"]", &["must not be empty"]),
         (
             "name = \"a\"\nmesh = \"cube\"\n[[body.keyframe]]\ntime = 1\n[[body.keyframe]]\ntime = 1",
             &["body[0].keyframe[1].time", "not after"],
