@@ -1,6 +1,6 @@
 //! Restitution and friction between solids.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use splashdown::scene::{Hinge, MeshShape, Method, Motion, Scene, Shape};
 use splashdown::{Device, Simulation, SimulationError};
 
@@ -202,4 +202,27 @@ fn small_bodies_have_a_mass() {
     // A ball of 20 um at a spacing of 0.5 mm.
     let refused = drop(1e-4, 5e-4).unwrap_err().to_string();
     assert!(refused.contains("too small for this particle_spacing"), "{refused}");
+}
+
+/// A hinged body cannot move along a normal that passes near its hinge. Rapier turned it at tens of radians per second to end
+/// such an overlap, and threw other bodies away.
+#[test]
+fn a_hinged_body_that_overlaps_the_floor_does_not_spin() {
+    let mut scene = room();
+    let middle = Vec3::new(0.8, 0.12, 0.3);
+    // The lowest corner is 2 cm below the floor, and 0.1 of its distance beside the hinge.
+    let mut wheel = body("wheel", "cube", 0.2, middle, free(500.0));
+    wheel.mesh.rotation = Quat::from_rotation_z((45.0_f32 - 5.7).to_radians());
+    if let Motion::Dynamic { hinge, .. } = &mut wheel.motion {
+        *hinge = Some(Hinge { point: middle, axis: Vec3::Z, motor: None });
+    }
+    let before = wheel.mesh.rotation;
+    scene.bodies = vec![wheel];
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    simulation.advance(0.05).unwrap();
+    let state = simulation.body_states().unwrap()[0];
+    assert!(
+        state.orientation.angle_between(before) < 0.02 && state.angular_velocity.length() < 0.5,
+        "{state:?}"
+    );
 }
