@@ -26,7 +26,7 @@ pub const CHIPS: [Chip; 3] = [
 ];
 
 /// Candidates that a warp tests for each particle, at a support radius of two spacings.
-const CANDIDATES: f64 = 155.0;
+const CANDIDATES: f64 = 170.0;
 /// Rows of cells.
 const ROWS: f64 = 9.0;
 /// Seconds between two dispatches that wait for one another.

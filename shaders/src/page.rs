@@ -29,7 +29,7 @@ pub fn page(passes: &[&'static PassDesc], all: &[(&Chip, Vec<Compiled>)]) -> Str
          A step of `wcsph` without bodies, support radius of two spacings. The prediction of a pass is 4 us for the dispatch,\n\
          plus the longer of two times: that of its instructions, at one instruction per lane and clock on all compute units,\n\
          and that of its memory traffic, at the bandwidth of the data sheet with each element transferred once. The longest\n\
-         loop within the loop over rows of cells counts 155 candidates, of which passes test one, four or eight per round;\n\
+         loop within the loop over rows of cells counts 170 candidates, of which passes test one, four or eight per round;\n\
          all else in the loop over rows counts 9 times, also the formula of a pair where it has a loop of its own. Stalls,\n\
          caches and the images at walls are not modelled. The prediction is therefore optimistic, and is meant to compare two versions of a pass and not two\n\
          products.\n\n",

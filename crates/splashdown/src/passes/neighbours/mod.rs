@@ -1,6 +1,6 @@
 //! Lists of neighbours on a GPU, for passes that visit the same neighbours again in a step.
 //!
-//! With a support radius of two spacings a warp tests 155 candidates for each particle, of which about 30 are neighbours. A
+//! With a support radius of two spacings a warp tests about 170 candidates for each particle, of which about 30 are neighbours. A
 //! pass over a list visits the neighbours only, and loads four at a time.
 //!
 //! The lists are for `dfsph`: the system, the iterations of the pressure, and those of the viscosity. Passes that visit
