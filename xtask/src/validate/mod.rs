@@ -28,10 +28,13 @@ const PLOTS: &str = "pictures/validation";
 pub fn run(arguments: &[String]) -> Result<()> {
     let (options, cases): (Vec<&String>, Vec<&String>) =
         arguments.iter().partition(|argument| argument.starts_with('-'));
-    if let Some(option) = options.iter().find(|option| !["--quick", "--page"].contains(&option.as_str())) {
+    let variant = options.iter().find_map(|option| option.strip_prefix("--variant="));
+    let is_known = |option: &str| ["--quick", "--page"].contains(&option) || option.starts_with("--variant=");
+    if let Some(option) = options.iter().find(|option| !is_known(option.as_str())) {
         bail!(
             "validate takes names of tests, for example `waves`, or nothing for all; --quick leaves out the finest \
-             resolution, --page only adds the figures of the last call to the page; got {option}"
+             resolution, --variant=NAME runs one column of each case, for example dfsph, and --page only adds the \
+             figures of the last call to the page; got {option}"
         );
     }
     let has = |name: &str| options.iter().any(|option| *option == name);
@@ -49,6 +52,9 @@ pub fn run(arguments: &[String]) -> Result<()> {
             command.args(["--test-threads", "1"]).args(&cases);
             let level = if has("--quick") { "quick" } else { "1" };
             command.env("SPLASHDOWN_FULL", level).env("SPLASHDOWN_FIGURES", &folder);
+            if let Some(variant) = variant {
+                command.env("SPLASHDOWN_VARIANT", variant);
+            }
             // Without a limit: a single case takes long at full resolution.
             layers::tests(&mut command, filter, None)
         });

@@ -120,6 +120,7 @@ impl BodyState {
 pub fn passes() -> Vec<&'static PassDesc> {
     [
         &boundary_lookup::WENDLAND_C2,
+        &boundary_lookup::WENDLAND_BLEND,
         &boundary_lookup::CUBIC_SPLINE,
         &boundary_lookup::MUELLER,
         &boundary_density::SUMMATION,
@@ -226,6 +227,7 @@ impl Bodies {
     fn record_boundary_lookup(&self, step: &mut StepRecorder<'_>) {
         step.dispatch_particles(self.by_kernels(
             &boundary_lookup::WENDLAND_C2,
+            &boundary_lookup::WENDLAND_BLEND,
             &boundary_lookup::CUBIC_SPLINE,
             &boundary_lookup::MUELLER,
         ));
@@ -296,11 +298,13 @@ impl Bodies {
     fn by_kernels(
         &self,
         wendland_c2: &'static PassDesc,
+        wendland_blend: &'static PassDesc,
         cubic_spline: &'static PassDesc,
         mueller: &'static PassDesc,
     ) -> &'static PassDesc {
         match self.kernels {
             KernelPair::WendlandC2 => wendland_c2,
+            KernelPair::WendlandBlend => wendland_blend,
             KernelPair::CubicSpline => cubic_spline,
             KernelPair::Mueller => mueller,
         }

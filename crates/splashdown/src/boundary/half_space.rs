@@ -3,13 +3,15 @@
 //! A solid that fills the half-space behind a plane at distance d = qH fills the part D(q) of the kernel's integral, and
 //! its gradient is G = -(A(q)/H) n with A = -D'. Both have closed forms.
 
-use crate::kernel::{CubicSpline, Kernel, Poly6, Spiky, WendlandC2};
+use crate::kernel::{BLEND_SHARE, CubicSpline, Kernel, Poly6, Spiky, WendlandBlend, WendlandC2};
 
 /// The kernels of the density and of the pressure gradient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KernelPair {
     /// Wendland C2 for both.
     WendlandC2,
+    /// The blend of Wendland's functions for both.
+    WendlandBlend,
     /// The cubic spline for both.
     CubicSpline,
     /// Poly6 for the density, spiky for the pressure.
@@ -23,6 +25,7 @@ impl KernelPair {
             Self::WendlandC2 => 0,
             Self::CubicSpline => 1,
             Self::Mueller => 2,
+            Self::WendlandBlend => 3,
         }
     }
 
@@ -31,6 +34,7 @@ impl KernelPair {
     pub fn density(self, q: f32) -> (f32, f32) {
         match self {
             Self::WendlandC2 => wendland_c2(q),
+            Self::WendlandBlend => wendland_blend(q),
             Self::CubicSpline => cubic_spline(q),
             Self::Mueller => poly6(q),
         }
@@ -59,6 +63,7 @@ impl KernelPair {
         let q = q as f32;
         let [density, gradient] = match self {
             Self::WendlandC2 => [WendlandC2::w(q); 2],
+            Self::WendlandBlend => [WendlandBlend::w(q); 2],
             Self::CubicSpline => [CubicSpline::w(q); 2],
             Self::Mueller => [Poly6::w(q), Spiky::w(q)],
         };
@@ -74,6 +79,9 @@ pub trait WallKernel {
 impl WallKernel for WendlandC2 {
     const WALLS: KernelPair = KernelPair::WendlandC2;
 }
+impl WallKernel for WendlandBlend {
+    const WALLS: KernelPair = KernelPair::WendlandBlend;
+}
 impl WallKernel for CubicSpline {
     const WALLS: KernelPair = KernelPair::CubicSpline;
 }
@@ -85,6 +93,16 @@ fn wendland_c2(q: f32) -> (f32, f32) {
     let t = 1.0 - q;
     let t5 = t * t * t * t * t;
     (0.5 * t5 * t * (3.0 * q * q + 3.0 * q + 1.0), 1.5 * t5 * (8.0 * q * q + 5.0 * q + 1.0))
+}
+
+fn wendland_blend(q: f32) -> (f32, f32) {
+    const THREE: f32 = 1.0 - BLEND_SHARE;
+    let t = 1.0 - q;
+    let t4 = t * t * t * t;
+    let d = 0.5 * t * (1.0 + q * (3.0 + 3.0 * q)) * THREE + (2.625 + t * (0.9375 * t - 3.0625)) * BLEND_SHARE;
+    let a =
+        1.5 * t * (1.0 + q * (5.0 + 8.0 * q)) * THREE + (13.125 + t * (6.5625 * t - 18.375)) * BLEND_SHARE;
+    (t4 * t * d, t4 * a)
 }
 
 fn cubic_spline(q: f32) -> (f32, f32) {

@@ -51,6 +51,39 @@ impl Kernel for WendlandC2 {
     }
 }
 
+/// A blend of the C2 functions of Wendland (1995) for three dimensions and for one.
+///
+/// A cubic lattice with this kernel and a support of two spacings does not resist a stretch along an axis: the density that is
+/// summed stays the same to second order (see [`BLEND_SHARE`]). With the function for three dimensions alone the summed
+/// density rises, and the pressure that results resists the shear of a wave, whose period is then an eighth too short. The
+/// Fourier transform of the blend is positive, so that particles do not form pairs.
+#[derive(Clone, Copy, Debug)]
+pub struct WendlandBlend;
+
+/// The part of the function for one dimension in [`WendlandBlend`], rounded down from 0.357. With that part a cubic lattice with
+/// a support of two spacings offers no resistance to a stretch along an axis; with a larger one the lattice is unstable.
+pub const BLEND_SHARE: f32 = 0.35;
+
+impl Kernel for WendlandBlend {
+    const ID: u32 = 4;
+
+    #[inline(always)]
+    fn w<V: Lanes>(q: V) -> V {
+        const THREE: f32 = (1.0 - BLEND_SHARE) * 21.0 / (2.0 * PI);
+        const ONE: f32 = BLEND_SHARE * 105.0 / (16.0 * PI);
+        let t = inside(q);
+        t * t * t * (t * (q * (4.0 * THREE) + THREE) + (q * (3.0 * ONE) + ONE))
+    }
+
+    #[inline(always)]
+    fn g<V: Lanes>(q: V) -> V {
+        const THREE: f32 = (1.0 - BLEND_SHARE) * 210.0 / PI;
+        const ONE: f32 = BLEND_SHARE * 315.0 / (4.0 * PI);
+        let t = inside(q);
+        t * t * (t * -THREE - ONE)
+    }
+}
+
 /// The cubic spline (Monaghan & Lattanzio 1985).
 #[derive(Clone, Copy, Debug)]
 pub struct CubicSpline;

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::solver::{KernelKind, Method, SurfaceTension};
 use super::things::Motion;
 use super::types::{Scene, Shape};
+use crate::kernel::BLEND_SHARE;
 
 /// Ratio of the speed of sound to the reference speed. With this value the density varies by at most one per
 /// cent (Monaghan 1994).
@@ -268,6 +269,11 @@ pub fn lattice_sum(method: Method, kernel: KernelKind, ratio: f64) -> f64 {
     let weight = |q: f64| match (method, kernel) {
         (Method::Mueller2003, _) => 315.0 / 64.0 * (1.0 - q * q).powi(3),
         (_, KernelKind::WendlandC2) => 10.5 * (1.0 - q).powi(4) * (1.0 + 4.0 * q),
+        (_, KernelKind::WendlandBlend) => {
+            let (three, one) = (10.5 * (1.0 - q) * (1.0 + 4.0 * q), 6.5625 * (1.0 + 3.0 * q));
+            let share = f64::from(BLEND_SHARE);
+            (1.0 - q).powi(3) * ((1.0 - share) * three + share * one)
+        }
         (_, KernelKind::CubicSpline) if q <= 0.5 => 8.0 * (6.0 * q * q * (q - 1.0) + 1.0),
         (_, KernelKind::CubicSpline) => 16.0 * (1.0 - q).powi(3),
     };
@@ -293,6 +299,7 @@ mod tests {
     #[test]
     fn lattice_sums_match_independent_values() {
         let c2 = |ratio| lattice_sum(Method::Wcsph, KernelKind::WendlandC2, ratio);
+        let blend = |ratio| lattice_sum(Method::Dfsph, KernelKind::WendlandBlend, ratio);
         let cubic = |ratio| lattice_sum(Method::Wcsph, KernelKind::CubicSpline, ratio);
         let poly6 = |ratio| lattice_sum(Method::Mueller2003, KernelKind::WendlandC2, ratio);
         let known = [
@@ -300,6 +307,8 @@ mod tests {
             (c2(2.4), 1.0175),
             (c2(3.0), 1.0031),
             (c2(4.0), 1.0006),
+            (blend(2.0), 1.02708),
+            (blend(3.0), 1.00281),
             (cubic(2.0), 0.99997),
             (cubic(2.4), 1.0008),
             (cubic(3.0), 1.0018),

@@ -17,6 +17,9 @@ choices! {
     KernelKind {
         /// Wendland's C2 function, without pairing instability.
         WendlandC2 = "wendland_c2",
+        /// A blend of Wendland's C2 functions for three dimensions and for one, with which particles resist the shear of
+        /// waves least at a support ratio of 2.
+        WendlandBlend = "wendland_blend",
         /// The cubic spline of Monaghan and Lattanzio.
         CubicSpline = "cubic_spline",
     }
@@ -69,7 +72,7 @@ choices! {
 pub struct Solver {
     /// The method.
     pub method: Method,
-    /// The kernel of `wcsph`.
+    /// The kernel of `wcsph` and `dfsph`.
     pub kernel: KernelKind,
     /// Support radius divided by the particle spacing.
     pub support_ratio: f32,
@@ -117,6 +120,9 @@ impl Solver {
         self.support_ratio * particle_spacing
     }
 
+    /// The default support ratio.
+    pub const NARROW_SUPPORT: f32 = 2.0;
+
     /// The support ratio of `accuracy = "engineering"`, and the smallest for the continuum surface force.
     pub const WIDE_SUPPORT: f32 = 3.0;
 
@@ -134,8 +140,8 @@ impl Solver {
         };
         Self {
             method,
-            kernel: KernelKind::WendlandC2,
-            support_ratio: 2.0,
+            kernel: Self::usual_kernel(method, Self::NARROW_SUPPORT),
+            support_ratio: Self::NARROW_SUPPORT,
             density,
             negative_pressure,
             sound_speed: None,
@@ -176,6 +182,7 @@ impl Solver {
             _ => Self::NEUTRAL_ANGLE,
         };
         *self = Self {
+            kernel: Self::usual_kernel(method, support_ratio),
             support_ratio,
             sound_speed,
             surface_tension,
@@ -186,6 +193,17 @@ impl Solver {
             sort,
             ..standard
         };
+    }
+
+    /// The default kernel. The blend suits the density that `dfsph` sums within about two spacings. With a wider support
+    /// the function for three dimensions resists shear as little, and corrected gradients do not need the blend.
+    pub(crate) fn usual_kernel(method: Method, support_ratio: f32) -> KernelKind {
+        const WIDEST_BLEND: f32 = 2.05;
+        if method == Method::Dfsph && support_ratio <= WIDEST_BLEND {
+            KernelKind::WendlandBlend
+        } else {
+            KernelKind::WendlandC2
+        }
     }
 
     /// The default tolerance. With `csf` it is smaller for `dfsph`: the pressure of a drop is small compared with that of its

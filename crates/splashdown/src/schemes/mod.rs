@@ -78,6 +78,7 @@ impl Scheme {
         match (self.method, self.kernel) {
             (Method::Mueller2003, _) => KernelPair::Mueller,
             (_, KernelKind::WendlandC2) => KernelPair::WendlandC2,
+            (_, KernelKind::WendlandBlend) => KernelPair::WendlandBlend,
             (_, KernelKind::CubicSpline) => KernelPair::CubicSpline,
         }
     }

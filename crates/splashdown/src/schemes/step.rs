@@ -122,13 +122,18 @@ impl<'a> Step<'a> {
     pub(super) fn density_and_pressure(&mut self) {
         let pass = match self.scheme.method {
             Method::Mueller2003 => &density::POLY6,
-            Method::Wcsph if self.scheme.is_density_integrated && self.couplings.bodies.is_some() => {
-                self.by_kernel(&continuity::WENDLAND_C2_BODIES, &continuity::CUBIC_SPLINE_BODIES)
-            }
-            Method::Wcsph if self.scheme.is_density_integrated => {
-                self.by_kernel(&continuity::WENDLAND_C2, &continuity::CUBIC_SPLINE)
-            }
-            _ => self.by_kernel(&density::WENDLAND_C2, &density::CUBIC_SPLINE),
+            Method::Wcsph if self.scheme.is_density_integrated && self.couplings.bodies.is_some() => self
+                .by_kernel(
+                    &continuity::WENDLAND_C2_BODIES,
+                    &continuity::WENDLAND_BLEND_BODIES,
+                    &continuity::CUBIC_SPLINE_BODIES,
+                ),
+            Method::Wcsph if self.scheme.is_density_integrated => self.by_kernel(
+                &continuity::WENDLAND_C2,
+                &continuity::WENDLAND_BLEND,
+                &continuity::CUBIC_SPLINE,
+            ),
+            _ => self.by_kernel(&density::WENDLAND_C2, &density::WENDLAND_BLEND, &density::CUBIC_SPLINE),
         };
         self.recorder.dispatch_particles(pass);
     }
@@ -138,19 +143,31 @@ impl<'a> Step<'a> {
         if !self.scheme.has_normals() {
             return;
         }
-        let pass = self.by_kernel(&normals::WENDLAND_C2, &normals::CUBIC_SPLINE);
+        let pass = self.by_kernel(&normals::WENDLAND_C2, &normals::WENDLAND_BLEND, &normals::CUBIC_SPLINE);
         self.recorder.dispatch_particles(pass);
     }
 
     /// Adds the continuum surface force to the accelerations.
     pub(super) fn tension_force(&mut self) {
         if self.scheme.has_tension_force() {
-            let smooth = self.by_kernel(&smooth_normals::WENDLAND_C2, &smooth_normals::CUBIC_SPLINE);
+            let smooth = self.by_kernel(
+                &smooth_normals::WENDLAND_C2,
+                &smooth_normals::WENDLAND_BLEND,
+                &smooth_normals::CUBIC_SPLINE,
+            );
             self.recorder.dispatch_particles(smooth);
             let force = if self.scheme.is_density_integrated {
-                self.by_kernel(&tension_force::WENDLAND_C2_CORRECTED, &tension_force::CUBIC_SPLINE_CORRECTED)
+                self.by_kernel(
+                    &tension_force::WENDLAND_C2_CORRECTED,
+                    &tension_force::WENDLAND_BLEND_CORRECTED,
+                    &tension_force::CUBIC_SPLINE_CORRECTED,
+                )
             } else {
-                self.by_kernel(&tension_force::WENDLAND_C2, &tension_force::CUBIC_SPLINE)
+                self.by_kernel(
+                    &tension_force::WENDLAND_C2,
+                    &tension_force::WENDLAND_BLEND,
+                    &tension_force::CUBIC_SPLINE,
+                )
             };
             self.recorder.dispatch_particles(force);
         }
@@ -163,21 +180,29 @@ impl<'a> Step<'a> {
     /// If the scheme is `mueller2003` or integrates the density, whose forces are one pass, and the part is another.
     pub(super) fn acceleration(&mut self, part: Part) {
         let pass = match (self.scheme.method, part) {
-            (Method::Wcsph, Part::All) if self.scheme.is_density_integrated => {
-                self.by_kernel(&corrected_acceleration::WENDLAND_C2, &corrected_acceleration::CUBIC_SPLINE)
-            }
+            (Method::Wcsph, Part::All) if self.scheme.is_density_integrated => self.by_kernel(
+                &corrected_acceleration::WENDLAND_C2,
+                &corrected_acceleration::WENDLAND_BLEND,
+                &corrected_acceleration::CUBIC_SPLINE,
+            ),
             (Method::Wcsph, _) if self.scheme.is_density_integrated => {
                 panic!("corrected accelerations have no pass for {part:?}")
             }
-            (Method::Wcsph, Part::All) => {
-                self.by_kernel(&acceleration::WENDLAND_C2, &acceleration::CUBIC_SPLINE)
-            }
-            (Method::Wcsph, Part::Pressure) => {
-                self.by_kernel(&acceleration::WENDLAND_C2_PRESSURE, &acceleration::CUBIC_SPLINE_PRESSURE)
-            }
-            (Method::Wcsph | Method::Dfsph, Part::Other) => {
-                self.by_kernel(&acceleration::WENDLAND_C2_OTHER, &acceleration::CUBIC_SPLINE_OTHER)
-            }
+            (Method::Wcsph, Part::All) => self.by_kernel(
+                &acceleration::WENDLAND_C2,
+                &acceleration::WENDLAND_BLEND,
+                &acceleration::CUBIC_SPLINE,
+            ),
+            (Method::Wcsph, Part::Pressure) => self.by_kernel(
+                &acceleration::WENDLAND_C2_PRESSURE,
+                &acceleration::WENDLAND_BLEND_PRESSURE,
+                &acceleration::CUBIC_SPLINE_PRESSURE,
+            ),
+            (Method::Wcsph | Method::Dfsph, Part::Other) => self.by_kernel(
+                &acceleration::WENDLAND_C2_OTHER,
+                &acceleration::WENDLAND_BLEND_OTHER,
+                &acceleration::CUBIC_SPLINE_OTHER,
+            ),
             (Method::Mueller2003, Part::All) => &mueller::MUELLER,
             (method, part) => panic!("{method} has no pass for {part:?}"),
         };
@@ -186,7 +211,11 @@ impl<'a> Step<'a> {
 
     /// Density, diagonal of the implicit pressure, viscosity and body forces.
     pub(super) fn implicit_system(&mut self) {
-        let pass = self.by_kernel(&implicit::system::WENDLAND_C2, &implicit::system::CUBIC_SPLINE);
+        let pass = self.by_kernel(
+            &implicit::system::WENDLAND_C2,
+            &implicit::system::WENDLAND_BLEND,
+            &implicit::system::CUBIC_SPLINE,
+        );
         self.recorder.dispatch_particles(pass);
     }
 
@@ -205,11 +234,18 @@ impl<'a> Step<'a> {
             return;
         }
         let (start, product) = if self.couplings.bodies.is_some() {
-            let start =
-                self.by_kernel(&viscous::start::WENDLAND_C2_BODIES, &viscous::start::CUBIC_SPLINE_BODIES);
+            let start = self.by_kernel(
+                &viscous::start::WENDLAND_C2_BODIES,
+                &viscous::start::WENDLAND_BLEND_BODIES,
+                &viscous::start::CUBIC_SPLINE_BODIES,
+            );
             (start, &viscous::product::BODIES)
         } else {
-            let start = self.by_kernel(&viscous::start::WENDLAND_C2, &viscous::start::CUBIC_SPLINE);
+            let start = self.by_kernel(
+                &viscous::start::WENDLAND_C2,
+                &viscous::start::WENDLAND_BLEND,
+                &viscous::start::CUBIC_SPLINE,
+            );
             (start, &viscous::product::PRODUCT)
         };
         self.recorder.dispatch_particles(&viscous::begin::BEGIN);
@@ -237,17 +273,27 @@ impl<'a> Step<'a> {
             [
                 self.by_kernel(
                     &implicit::predict::WENDLAND_C2_BODIES,
+                    &implicit::predict::WENDLAND_BLEND_BODIES,
                     &implicit::predict::CUBIC_SPLINE_BODIES,
                 ),
                 self.by_kernel(
                     &implicit::residual::WENDLAND_C2_BODIES,
+                    &implicit::residual::WENDLAND_BLEND_BODIES,
                     &implicit::residual::CUBIC_SPLINE_BODIES,
                 ),
             ]
         } else {
             [
-                self.by_kernel(&implicit::predict::WENDLAND_C2, &implicit::predict::CUBIC_SPLINE),
-                self.by_kernel(&implicit::residual::WENDLAND_C2, &implicit::residual::CUBIC_SPLINE),
+                self.by_kernel(
+                    &implicit::predict::WENDLAND_C2,
+                    &implicit::predict::WENDLAND_BLEND,
+                    &implicit::predict::CUBIC_SPLINE,
+                ),
+                self.by_kernel(
+                    &implicit::residual::WENDLAND_C2,
+                    &implicit::residual::WENDLAND_BLEND,
+                    &implicit::residual::CUBIC_SPLINE,
+                ),
             ]
         };
         self.recorder.dispatch_particles(&implicit::begin::BEGIN);
@@ -264,7 +310,11 @@ impl<'a> Step<'a> {
 
     /// Forces and integration in one pass.
     pub(super) fn force_integrate(&mut self) {
-        let pass = self.by_kernel(&force_integrate::WENDLAND_C2, &force_integrate::CUBIC_SPLINE);
+        let pass = self.by_kernel(
+            &force_integrate::WENDLAND_C2,
+            &force_integrate::WENDLAND_BLEND,
+            &force_integrate::CUBIC_SPLINE,
+        );
         self.recorder.dispatch_particles(pass);
         self.store_carried();
     }
@@ -324,10 +374,12 @@ impl<'a> Step<'a> {
     fn by_kernel(
         &self,
         wendland_c2: &'static PassDesc,
+        wendland_blend: &'static PassDesc,
         cubic_spline: &'static PassDesc,
     ) -> &'static PassDesc {
         match self.scheme.kernel {
             KernelKind::WendlandC2 => wendland_c2,
+            KernelKind::WendlandBlend => wendland_blend,
             KernelKind::CubicSpline => cubic_spline,
         }
     }

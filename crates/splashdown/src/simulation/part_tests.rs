@@ -105,7 +105,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn pressure_and_other_forces_sum_to_all_forces() {
-    for kernel in [KernelKind::WendlandC2, KernelKind::CubicSpline] {
+    for kernel in [KernelKind::WendlandC2, KernelKind::WendlandBlend, KernelKind::CubicSpline] {
         let checkpoint = checkpoint(kernel);
         let parts = [Part::All, Part::Pressure, Part::Other];
         let of = |executor: fn() -> Executor| parts.map(|part| forces(&checkpoint, executor(), part));

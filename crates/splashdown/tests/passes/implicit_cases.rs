@@ -13,8 +13,11 @@ use super::world::{World, params};
 /// As for the other sums over neighbours.
 const ROUNDING: f64 = 2e-5;
 
-const KERNELS: [(Kernel, &str); 2] =
-    [(Kernel::WendlandC2, "wendland_c2"), (Kernel::CubicSpline, "cubic_spline")];
+const KERNELS: [(Kernel, &str); 3] = [
+    (Kernel::WendlandC2, "wendland_c2"),
+    (Kernel::WendlandBlend, "wendland_blend"),
+    (Kernel::CubicSpline, "cubic_spline"),
+];
 
 pub fn cases() -> Vec<Case> {
     let open = Params { closed: 0b110111, artificial_viscosity: 0.0, ..params(2.5) };

@@ -23,21 +23,26 @@ pub struct Kernels {
 }
 
 pub const C2: Kernels = Kernels { density: Kernel::WendlandC2, gradient: Kernel::WendlandC2 };
+pub const BLEND: Kernels = Kernels { density: Kernel::WendlandBlend, gradient: Kernel::WendlandBlend };
 pub const CUBIC: Kernels = Kernels { density: Kernel::CubicSpline, gradient: Kernel::CubicSpline };
 const MUELLER: Kernels = Kernels { density: Kernel::Poly6, gradient: Kernel::Spiky };
 
 pub fn word(kernels: Kernels) -> &'static str {
-    if kernels.density == Kernel::WendlandC2 { "wendland_c2" } else { "cubic_spline" }
+    match kernels.density {
+        Kernel::WendlandC2 => "wendland_c2",
+        Kernel::WendlandBlend => "wendland_blend",
+        _ => "cubic_spline",
+    }
 }
 
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     let rich = Params { exponent: 1.0, clamp_pressure: 1, closed: 0b110111, ..params(2.5) };
-    for kernels in [C2, CUBIC, MUELLER] {
+    for kernels in [C2, BLEND, CUBIC, MUELLER] {
         cases.push(density("closed", kernels, params(2.0)));
         cases.push(density("wider support, clamped, open above", kernels, rich));
     }
-    for kernels in [C2, CUBIC] {
+    for kernels in [C2, BLEND, CUBIC] {
         let open = Params { clamp_pressure: 0, ..rich };
         for bodies in [false, true] {
             cases.push(continuity("closed", kernels, params(2.0), bodies));
@@ -433,7 +438,7 @@ fn motion(name: &str, kernels: Kernels, params: Params, remaining: f32) -> Case 
 /// Fusing two passes does not change the result on the CPU.
 #[test]
 fn the_fused_pass_agrees_with_separate_force_and_integration_passes() {
-    for kernels in [C2, CUBIC] {
+    for kernels in [C2, BLEND, CUBIC] {
         let case = motion("", kernels, params(2.0), 0.01);
         let mut executor = CpuExecutor::new().into();
         let expected = two_passes(&world(params(2.0)), kernels);

@@ -14,6 +14,7 @@ use super::world::World;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
     WendlandC2,
+    WendlandBlend,
     CubicSpline,
     Poly6,
     Spiky,
@@ -26,6 +27,10 @@ impl Kernel {
         }
         match self {
             Self::WendlandC2 => 21.0 / (2.0 * PI) * (1.0 - q).powi(4) * (1.0 + 4.0 * q),
+            Self::WendlandBlend => {
+                0.65 * Self::WendlandC2.w(q)
+                    + 0.35 * 105.0 / (16.0 * PI) * (1.0 - q).powi(3) * (1.0 + 3.0 * q)
+            }
             Self::CubicSpline if q <= 0.5 => 8.0 / PI * (6.0 * q.powi(3) - 6.0 * q.powi(2) + 1.0),
             Self::CubicSpline => 8.0 / PI * 2.0 * (1.0 - q).powi(3),
             Self::Poly6 => 315.0 / (64.0 * PI) * (1.0 - q * q).powi(3),
@@ -39,6 +44,9 @@ impl Kernel {
         }
         match self {
             Self::WendlandC2 => -210.0 / PI * q * (1.0 - q).powi(3),
+            Self::WendlandBlend => {
+                0.65 * Self::WendlandC2.dw(q) - 0.35 * 315.0 / (4.0 * PI) * q * (1.0 - q).powi(2)
+            }
             Self::CubicSpline if q <= 0.5 => 48.0 / PI * q * (3.0 * q - 2.0),
             Self::CubicSpline => -48.0 / PI * (1.0 - q).powi(2),
             Self::Poly6 => -315.0 / (64.0 * PI) * 6.0 * q * (1.0 - q * q).powi(2),

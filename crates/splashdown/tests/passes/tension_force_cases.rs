@@ -5,7 +5,7 @@ use splashdown::state::Params;
 
 use super::corrected_oracle::symmetric;
 use super::harness::{Case, Data};
-use super::neighbour_cases::{C2, CUBIC, Expected, Kernels, base, corrections, word, world};
+use super::neighbour_cases::{BLEND, C2, CUBIC, Expected, Kernels, base, corrections, word, world};
 use super::oracle::{Sum, constants, neighbours};
 use super::world::{World, params};
 
@@ -24,7 +24,7 @@ pub fn cases() -> Vec<Case> {
     // 120 degrees.
     let repelled = |params: Params| Params { wetting: -1.0 / params.support_radius, ..params };
     let mut cases = Vec::new();
-    for kernels in [C2, CUBIC] {
+    for kernels in [C2, BLEND, CUBIC] {
         cases.push(smooth_normals("closed", kernels, surface(2.0)));
         for is_corrected in [false, true] {
             cases.push(tension_force("closed", kernels, surface(2.0), is_corrected));

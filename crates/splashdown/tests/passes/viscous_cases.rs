@@ -10,8 +10,11 @@ use super::implicit_cases::{Output, base, case, lists, poisoned, signed, vectors
 use super::oracle::{Kernel, constants, neighbours, speed};
 use super::world::{World, params};
 
-const KERNELS: [(Kernel, &str); 2] =
-    [(Kernel::WendlandC2, "wendland_c2"), (Kernel::CubicSpline, "cubic_spline")];
+const KERNELS: [(Kernel, &str); 3] = [
+    (Kernel::WendlandC2, "wendland_c2"),
+    (Kernel::WendlandBlend, "wendland_blend"),
+    (Kernel::CubicSpline, "cubic_spline"),
+];
 
 pub fn cases() -> Vec<Case> {
     let open = Params { closed: 0b110111, wall_friction: 0.3, ..params(2.5) };

@@ -58,11 +58,13 @@ impl Case {
     }
 
     /// Runs every variant except the controls at every resolution, and fails after the last of them if a gate is missed.
+    /// `SPLASHDOWN_VARIANT` selects one variant.
     pub fn run(&'static self, mut body: impl FnMut(&'static Variant, u32, &mut Figures)) {
         let mut problems = Vec::new();
         for &across in self.sizes() {
             for variant in self.variants.iter().filter(|variant| variant.name != CONTROL.name) {
-                if variant.in_tests || is_validation() {
+                let is_selected = env::var("SPLASHDOWN_VARIANT").map_or(true, |name| name == variant.name);
+                if is_selected && (variant.in_tests || is_validation()) {
                     let mut figures = Figures::new(self, variant.name, across);
                     body(variant, across, &mut figures);
                     problems.extend(figures.finish().err());

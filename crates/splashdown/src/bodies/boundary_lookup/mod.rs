@@ -25,7 +25,7 @@ use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 use super::field;
 use super::types::{self, Body, Contact};
 use crate::boundary::{self, KernelPair};
-use crate::kernel::{self, CubicSpline, Kernel, Poly6};
+use crate::kernel::{self, CubicSpline, Kernel, Poly6, WendlandBlend};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS};
 
 const IMPORTS: &[WgslModule] = &[
@@ -63,6 +63,17 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
     bindings: BoundaryLookupBindings::LIST,
     cpu: |_, slots| cpu::boundary_lookup::<kernel::WendlandC2>(slots.into()),
+};
+
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "bodies.boundary_lookup.wendland_blend",
+    constants: &[
+        ("KERNEL", WendlandBlend::ID as f64),
+        ("WALL_KERNEL", KernelPair::WendlandBlend.id() as f64),
+    ],
+    cpu: |_, slots| cpu::boundary_lookup::<WendlandBlend>(slots.into()),
+    ..WENDLAND_C2
 };
 
 /// With the cubic spline.

@@ -1,6 +1,7 @@
 use super::*;
 
-const ALL: [KernelPair; 3] = [KernelPair::WendlandC2, KernelPair::CubicSpline, KernelPair::Mueller];
+const ALL: [KernelPair; 4] =
+    [KernelPair::WendlandC2, KernelPair::WendlandBlend, KernelPair::CubicSpline, KernelPair::Mueller];
 
 /// The integral of the kernels over the part of the ball behind a plane at `q`, by the midpoint rule.
 fn solid_integral(kernels: KernelPair, q: f64) -> [f64; 2] {

@@ -19,7 +19,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 use super::{FORCES, TENSION};
 use crate::boundary::{self, KernelPair, part};
 use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::state::{PARAMS, Params, STATE, StepState};
 
 bindings! {
@@ -63,6 +63,17 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     cpu: |_, slots| cpu::acceleration::<kernel::WendlandC2, { part::ALL }>(slots.into()),
 };
 
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "acceleration.wendland_blend",
+    constants: &[
+        ("KERNEL", WendlandBlend::ID as f64),
+        ("WALL_KERNEL", KernelPair::WendlandBlend.id() as f64),
+    ],
+    cpu: |_, slots| cpu::acceleration::<WendlandBlend, { part::ALL }>(slots.into()),
+    ..WENDLAND_C2
+};
+
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "acceleration.cubic_spline",
@@ -79,6 +90,18 @@ pub static WENDLAND_C2_PRESSURE: PassDesc = PassDesc {
     ..WENDLAND_C2
 };
 
+/// The pressure part with the blend of Wendland's functions.
+pub static WENDLAND_BLEND_PRESSURE: PassDesc = PassDesc {
+    label: "acceleration.wendland_blend.pressure",
+    constants: &[
+        ("KERNEL", WendlandBlend::ID as f64),
+        ("WALL_KERNEL", KernelPair::WendlandBlend.id() as f64),
+        ("FORCES", part::PRESSURE as f64),
+    ],
+    cpu: |_, slots| cpu::acceleration::<WendlandBlend, { part::PRESSURE }>(slots.into()),
+    ..WENDLAND_C2
+};
+
 /// The pressure part with the cubic spline.
 pub static CUBIC_SPLINE_PRESSURE: PassDesc = PassDesc {
     label: "acceleration.cubic_spline.pressure",
@@ -88,6 +111,18 @@ pub static CUBIC_SPLINE_PRESSURE: PassDesc = PassDesc {
         ("FORCES", part::PRESSURE as f64),
     ],
     cpu: |_, slots| cpu::acceleration::<CubicSpline, { part::PRESSURE }>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// The other forces with the blend of Wendland's functions.
+pub static WENDLAND_BLEND_OTHER: PassDesc = PassDesc {
+    label: "acceleration.wendland_blend.other",
+    constants: &[
+        ("KERNEL", WendlandBlend::ID as f64),
+        ("WALL_KERNEL", KernelPair::WendlandBlend.id() as f64),
+        ("FORCES", part::OTHER as f64),
+    ],
+    cpu: |_, slots| cpu::acceleration::<WendlandBlend, { part::OTHER }>(slots.into()),
     ..WENDLAND_C2
 };
 

@@ -32,7 +32,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 use super::correction;
 use crate::boundary;
 use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::state::{PARAMS, Params, STATE, SYMMETRIC, StepState};
 
 bindings! {
@@ -73,6 +73,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     cpu: |_, slots| cpu::continuity::<kernel::WendlandC2, false>(slots.into()),
 };
 
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "continuity.wendland_blend",
+    constants: &[("KERNEL", WendlandBlend::ID as f64)],
+    cpu: |_, slots| cpu::continuity::<WendlandBlend, false>(slots.into()),
+    ..WENDLAND_C2
+};
+
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "continuity.cubic_spline",
@@ -86,6 +94,14 @@ pub static WENDLAND_C2_BODIES: PassDesc = PassDesc {
     label: "continuity.wendland_c2.bodies",
     constants: &[("KERNEL", 0.0), ("BODIES", 1.0)],
     cpu: |_, slots| cpu::continuity::<kernel::WendlandC2, true>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the blend of Wendland's functions and bodies.
+pub static WENDLAND_BLEND_BODIES: PassDesc = PassDesc {
+    label: "continuity.wendland_blend.bodies",
+    constants: &[("KERNEL", WendlandBlend::ID as f64), ("BODIES", 1.0)],
+    cpu: |_, slots| cpu::continuity::<WendlandBlend, true>(slots.into()),
     ..WENDLAND_C2
 };
 

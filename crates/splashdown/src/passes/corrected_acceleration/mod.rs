@@ -26,7 +26,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 use super::{TENSION, correction};
 use crate::boundary::{self, KernelPair};
 use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::state::{PARAMS, Params, STATE, SYMMETRIC, StepState};
 
 bindings! {
@@ -71,6 +71,17 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
     bindings: CorrectedAccelerationBindings::LIST,
     cpu: |_, slots| cpu::corrected_acceleration::<kernel::WendlandC2>(slots.into()),
+};
+
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "corrected_acceleration.wendland_blend",
+    constants: &[
+        ("KERNEL", WendlandBlend::ID as f64),
+        ("WALL_KERNEL", KernelPair::WendlandBlend.id() as f64),
+    ],
+    cpu: |_, slots| cpu::corrected_acceleration::<WendlandBlend>(slots.into()),
+    ..WENDLAND_C2
 };
 
 /// With the cubic spline.

@@ -10,7 +10,7 @@ use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
 use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel, Poly6};
+use crate::kernel::{self, CubicSpline, Kernel, Poly6, WendlandBlend};
 use crate::state::{PARAMS, Params, STATE};
 
 const IMPORTS: &[WgslModule] = &[wgsl::INDEX, STATE, PARAMS, GRID, ROWS, kernel::WGSL, boundary::IMAGES];
@@ -36,6 +36,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     constants: &[("KERNEL", 0.0)],
     bindings: DensityBindings::LIST,
     cpu: |_, slots| cpu::density::<kernel::WendlandC2>(slots.into()),
+};
+
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "density.wendland_blend",
+    constants: &[("KERNEL", WendlandBlend::ID as f64)],
+    cpu: |_, slots| cpu::density::<WendlandBlend>(slots.into()),
+    ..WENDLAND_C2
 };
 
 /// With the cubic spline.

@@ -13,7 +13,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 use super::{ADVANCE, FORCES};
 use crate::boundary::{self, KernelPair};
 use crate::cells::{CANDIDATES, CELL_COUNTS, GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
 
 bindings! {
@@ -59,6 +59,17 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
     bindings: ForceIntegrateBindings::LIST,
     cpu: |_, slots| cpu::force_integrate::<kernel::WendlandC2>(slots.into()),
+};
+
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "force_integrate.wendland_blend",
+    constants: &[
+        ("KERNEL", WendlandBlend::ID as f64),
+        ("WALL_KERNEL", KernelPair::WendlandBlend.id() as f64),
+    ],
+    cpu: |_, slots| cpu::force_integrate::<WendlandBlend>(slots.into()),
+    ..WENDLAND_C2
 };
 
 /// With the cubic spline.

@@ -75,18 +75,23 @@ const LARGEST_IN_GROUP: f32 = 5.0;
 const GROUPS: usize = 64;
 
 /// The passes of this module.
-pub(super) fn passes() -> [&'static PassDesc; 13] {
+pub(super) fn passes() -> [&'static PassDesc; 18] {
     [
         &system::WENDLAND_C2,
+        &system::WENDLAND_BLEND,
         &system::CUBIC_SPLINE,
         &begin::BEGIN,
         &predict::WENDLAND_C2,
+        &predict::WENDLAND_BLEND,
         &predict::CUBIC_SPLINE,
         &predict::WENDLAND_C2_BODIES,
+        &predict::WENDLAND_BLEND_BODIES,
         &predict::CUBIC_SPLINE_BODIES,
         &residual::WENDLAND_C2,
+        &residual::WENDLAND_BLEND,
         &residual::CUBIC_SPLINE,
         &residual::WENDLAND_C2_BODIES,
+        &residual::WENDLAND_BLEND_BODIES,
         &residual::CUBIC_SPLINE_BODIES,
         &decide::DECIDE,
         &finish::FINISH,

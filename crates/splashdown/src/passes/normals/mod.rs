@@ -9,7 +9,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::state::{PARAMS, Params, STATE};
 
 bindings! {
@@ -34,6 +34,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     constants: &[("KERNEL", 0.0)],
     bindings: SurfaceNormalsBindings::LIST,
     cpu: |_, slots| cpu::normals::<kernel::WendlandC2>(slots.into()),
+};
+
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "normals.wendland_blend",
+    constants: &[("KERNEL", WendlandBlend::ID as f64)],
+    cpu: |_, slots| cpu::normals::<WendlandBlend>(slots.into()),
+    ..WENDLAND_C2
 };
 
 /// With the cubic spline.

@@ -11,7 +11,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::state::{PARAMS, Params, STATE};
 
 bindings! {
@@ -36,6 +36,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     constants: &[("KERNEL", 0.0)],
     bindings: SmoothNormalsBindings::LIST,
     cpu: |_, slots| cpu::smooth_normals::<kernel::WendlandC2>(slots.into()),
+};
+
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "smooth_normals.wendland_blend",
+    constants: &[("KERNEL", WendlandBlend::ID as f64)],
+    cpu: |_, slots| cpu::smooth_normals::<WendlandBlend>(slots.into()),
+    ..WENDLAND_C2
 };
 
 /// With the cubic spline.

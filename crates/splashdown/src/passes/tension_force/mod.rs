@@ -32,7 +32,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::state::{PARAMS, Params, STATE, SYMMETRIC};
 
 bindings! {
@@ -61,6 +61,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     cpu: |_, slots| cpu::tension_force::<kernel::WendlandC2, false>(slots.into()),
 };
 
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "tension_force.wendland_blend",
+    constants: &[("KERNEL", WendlandBlend::ID as f64), ("CORRECTED", 0.0)],
+    cpu: |_, slots| cpu::tension_force::<WendlandBlend, false>(slots.into()),
+    ..WENDLAND_C2
+};
+
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "tension_force.cubic_spline",
@@ -74,6 +82,14 @@ pub static WENDLAND_C2_CORRECTED: PassDesc = PassDesc {
     label: "tension_force.wendland_c2_corrected",
     constants: &[("KERNEL", 0.0), ("CORRECTED", 1.0)],
     cpu: |_, slots| cpu::tension_force::<kernel::WendlandC2, true>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the blend of Wendland's functions and corrected gradients.
+pub static WENDLAND_BLEND_CORRECTED: PassDesc = PassDesc {
+    label: "tension_force.wendland_blend_corrected",
+    constants: &[("KERNEL", WendlandBlend::ID as f64), ("CORRECTED", 1.0)],
+    cpu: |_, slots| cpu::tension_force::<WendlandBlend, true>(slots.into()),
     ..WENDLAND_C2
 };
 

@@ -54,12 +54,14 @@ const GROUP: usize = 64;
 const GROUPS: usize = 64;
 
 /// The passes of this module.
-pub(super) fn passes() -> [&'static PassDesc; 10] {
+pub(super) fn passes() -> [&'static PassDesc; 12] {
     [
         &begin::BEGIN,
         &start::WENDLAND_C2,
+        &start::WENDLAND_BLEND,
         &start::CUBIC_SPLINE,
         &start::WENDLAND_C2_BODIES,
+        &start::WENDLAND_BLEND_BODIES,
         &start::CUBIC_SPLINE_BODIES,
         &product::PRODUCT,
         &product::BODIES,

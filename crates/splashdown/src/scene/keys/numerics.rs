@@ -17,7 +17,7 @@ pub(super) static SOLVER: Table = Table {
         .also(&["type", "name", "scheme", "solver"]),
         key("accuracy", Kind::Word(words::<Accuracy>), "Purpose; determines defaults of other keys of this section.")
             .default("\"standard\""),
-        key("kernel", Kind::Word(words::<KernelKind>), "Kernel of wcsph and dfsph.").default("\"wendland_c2\""),
+        key("kernel", Kind::Word(words::<KernelKind>), "Kernel of wcsph and dfsph. Default: wendland_c2; wendland_blend with dfsph and a support_ratio of up to 2.05."),
         key(
             "support_ratio",
             a_number(1.5, 4.0, ""),

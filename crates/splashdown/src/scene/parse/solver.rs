@@ -34,12 +34,13 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
     let standard = Solver::with(method, density);
     let surface_tension = surface_tension?.unwrap_or(standard.surface_tension);
     let has_tension_force = surface_tension == SurfaceTension::Csf;
+    let support_ratio = support_ratio?.unwrap_or(match accuracy {
+        Accuracy::Standard if !has_tension_force => standard.support_ratio,
+        _ => Solver::WIDE_SUPPORT,
+    });
     let solver = Solver {
-        kernel: kernel?.unwrap_or(standard.kernel),
-        support_ratio: support_ratio?.unwrap_or(match accuracy {
-            Accuracy::Standard if !has_tension_force => standard.support_ratio,
-            _ => Solver::WIDE_SUPPORT,
-        }),
+        kernel: kernel?.unwrap_or(Solver::usual_kernel(method, support_ratio)),
+        support_ratio,
         negative_pressure: negative_pressure?.unwrap_or(standard.negative_pressure),
         sound_speed: sound_speed?,
         stiffness: stiffness?,

@@ -30,7 +30,7 @@ use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 
 use crate::boundary;
 use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::passes::group_sum;
 use crate::passes::neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 use crate::state::{PARAMS, Params, SOLVE, STATE, SolveState, StepState};
@@ -85,6 +85,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     cpu: |work, slots| cpu::residual::<kernel::WendlandC2, false>(work.scratch, slots.into()),
 };
 
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "implicit.residual.wendland_blend",
+    constants: &[("KERNEL", WendlandBlend::ID as f64)],
+    cpu: |work, slots| cpu::residual::<WendlandBlend, false>(work.scratch, slots.into()),
+    ..WENDLAND_C2
+};
+
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "implicit.residual.cubic_spline",
@@ -98,6 +106,14 @@ pub static WENDLAND_C2_BODIES: PassDesc = PassDesc {
     label: "implicit.residual.wendland_c2.bodies",
     constants: &[("KERNEL", 0.0), ("BODIES", 1.0)],
     cpu: |work, slots| cpu::residual::<kernel::WendlandC2, true>(work.scratch, slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the blend of Wendland's functions and bodies.
+pub static WENDLAND_BLEND_BODIES: PassDesc = PassDesc {
+    label: "implicit.residual.wendland_blend.bodies",
+    constants: &[("KERNEL", WendlandBlend::ID as f64), ("BODIES", 1.0)],
+    cpu: |work, slots| cpu::residual::<WendlandBlend, true>(work.scratch, slots.into()),
     ..WENDLAND_C2
 };
 

@@ -13,7 +13,7 @@ use splashdown_gpu::{PassDesc, bindings, wgsl};
 
 use crate::boundary::{self, KernelPair};
 use crate::cells::{CANDIDATES, GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::passes::neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 use crate::state::{PARAMS, Params, STATE, StepState};
 
@@ -57,6 +57,17 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     constants: &[("KERNEL", 0.0), ("WALL_KERNEL", 0.0)],
     bindings: SystemBindings::LIST,
     cpu: |work, slots| cpu::system::<kernel::WendlandC2>(work.scratch, slots.into()),
+};
+
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "implicit.system.wendland_blend",
+    constants: &[
+        ("KERNEL", WendlandBlend::ID as f64),
+        ("WALL_KERNEL", KernelPair::WendlandBlend.id() as f64),
+    ],
+    cpu: |work, slots| cpu::system::<WendlandBlend>(work.scratch, slots.into()),
+    ..WENDLAND_C2
 };
 
 /// With the cubic spline.

@@ -11,7 +11,7 @@ use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
 use super::pair;
 use crate::boundary;
 use crate::cells::{GRID, Grid, ROWS};
-use crate::kernel::{self, CubicSpline, Kernel};
+use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::passes::group_sum;
 use crate::state::{PARAMS, Params, STATE, StepState, VISCOUS, ViscousState};
 
@@ -58,6 +58,14 @@ pub static WENDLAND_C2: PassDesc = PassDesc {
     cpu: |_, slots| cpu::start::<kernel::WendlandC2, false>(slots.into()),
 };
 
+/// With the blend of Wendland's functions.
+pub static WENDLAND_BLEND: PassDesc = PassDesc {
+    label: "viscous.start.wendland_blend",
+    constants: &[("KERNEL", WendlandBlend::ID as f64)],
+    cpu: |_, slots| cpu::start::<WendlandBlend, false>(slots.into()),
+    ..WENDLAND_C2
+};
+
 /// With the cubic spline.
 pub static CUBIC_SPLINE: PassDesc = PassDesc {
     label: "viscous.start.cubic_spline",
@@ -71,6 +79,14 @@ pub static WENDLAND_C2_BODIES: PassDesc = PassDesc {
     label: "viscous.start.wendland_c2.bodies",
     constants: &[("KERNEL", 0.0), ("BODIES", 1.0)],
     cpu: |_, slots| cpu::start::<kernel::WendlandC2, true>(slots.into()),
+    ..WENDLAND_C2
+};
+
+/// With the blend of Wendland's functions and bodies.
+pub static WENDLAND_BLEND_BODIES: PassDesc = PassDesc {
+    label: "viscous.start.wendland_blend.bodies",
+    constants: &[("KERNEL", WendlandBlend::ID as f64), ("BODIES", 1.0)],
+    cpu: |_, slots| cpu::start::<WendlandBlend, true>(slots.into()),
     ..WENDLAND_C2
 };
 
