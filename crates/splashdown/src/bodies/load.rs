@@ -8,7 +8,7 @@ use splashdown_io::{IoError, Mesh};
 
 use super::BodyMesh;
 use super::types::{Body, Contact};
-use crate::boundary::{KernelPair, closed_bounds, solid_offset};
+use crate::boundary::{KernelPair, SolidDistance, closed_bounds};
 use crate::models;
 use crate::scene::{self, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Script, SolidContact, UpAxis};
 use crate::solid::{self, Placed, Solid, SolidError, SolidKind, SolidSettings, Surroundings};
@@ -460,7 +460,7 @@ fn boundary_particles(solid: &Solid, params: &Params, kernels: KernelPair) -> Ve
         places.iter().map(|&x| 1.0 / near.sum(x, |r| kernels.w(r / support) / support.powi(3))).collect();
     let mut scale = 1.0;
     if !shell {
-        let offset = spacing * solid_offset(kernels, support / spacing);
+        let offset = spacing * SolidDistance::of_density(kernels, support / spacing).offset;
         let wanted = kernels.density((0.5 * spacing + offset) / support).0;
         let (mut kernel_fraction, mut count) = (0.0f64, 0.0f64);
         for &x in &places {

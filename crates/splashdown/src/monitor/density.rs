@@ -8,7 +8,7 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::boundary::{KernelPair, solid_offset};
+use crate::boundary::{KernelPair, SolidDistance};
 use crate::kernel::{Kernel, WendlandC2};
 use crate::scene::{KernelKind, Method, lattice_sum};
 use crate::state::Params;
@@ -55,7 +55,7 @@ pub(super) fn density_error(
     let sums = Sums::new(positions, support);
     let lattice = lattice_sum(Method::Wcsph, KernelKind::WendlandC2, ratio.into()) as f32;
     let weight = (spacing / support).powi(3) / lattice;
-    let offset = spacing * solid_offset(KernelPair::WendlandC2, ratio);
+    let offset = spacing * SolidDistance::of_density(KernelPair::WendlandC2, ratio).offset;
     let most = (positions.len() / ONE_OF).clamp(EVALUATED[0], EVALUATED[1]);
     let stride = positions.len().div_ceil(most).max(1);
     let first = (turn % stride as u64) as usize;

@@ -1,7 +1,7 @@
 //! Computes the constants of a simulation from its scene.
 
 use super::{Scheme, dfsph, mueller2003, wcsph};
-use crate::boundary::solid_offset;
+use crate::boundary::SolidDistance;
 use crate::passes::viscous;
 use crate::scene::{Derived, Method, NegativePressure, Scene, Solver, SurfaceTension};
 use crate::state::Params;
@@ -62,6 +62,11 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
     } else {
         solver.max_dt
     };
+    let solid = if scheme.is_implicit() {
+        SolidDistance::of_lattice(scheme.walls(), solver.support_ratio)
+    } else {
+        SolidDistance::of_density(scheme.walls(), solver.support_ratio)
+    };
     Params {
         gravity: scene.gravity,
         support_radius,
@@ -73,7 +78,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         oscillation_rate,
         rest_density,
         sound_speed: derived.sound_speed,
-        solid_offset: scene.fluid.particle_spacing * solid_offset(scheme.walls(), solver.support_ratio),
+        solid_offset: scene.fluid.particle_spacing * solid.offset,
         exponent: solver.exponent,
         viscosity: material.viscosity + numerical_viscosity - implicit_viscosity,
         artificial_viscosity: solver.artificial_viscosity,
@@ -135,5 +140,9 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
             SurfaceTension::None => dfsph::surface_completion(solver.kernel, f64::from(solver.support_ratio)),
             _ => 0.0,
         },
+        solid_stretch: solid.stretch,
+        slope_offset: scene.fluid.particle_spacing * solid.slope_offset,
+        unused_0: 0.0,
+        unused_1: 0.0,
     }
 }

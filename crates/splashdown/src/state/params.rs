@@ -29,8 +29,8 @@ gpu_struct! {
         rest_density: f32,
         /// Numerical speed of sound in m/s.
         sound_speed: f32,
-        /// Distance between the surface of a body and the solid behind it in metres: see
-        /// [`solid_offset`](crate::boundary::solid_offset).
+        /// Offset of the distance to a body for the density, in metres: see
+        /// [`SolidDistance`](crate::boundary::SolidDistance).
         solid_offset: f32,
         /// Exponent of the equation of state.
         exponent: f32,
@@ -101,6 +101,14 @@ gpu_struct! {
         /// Factor of the density that the implicit pressure adds at the free surface; see
         /// [`residual`](crate::passes::implicit::residual).
         surface_completion: f32,
+        /// Factor of the distance to a body.
+        solid_stretch: f32,
+        /// Offset of the distance to a body for the gradient of the density, in metres.
+        slope_offset: f32,
+        /// Uniform buffers are multiples of 16 bytes.
+        unused_0: f32,
+        /// As `unused_0`.
+        unused_1: f32,
     }
 }
 

@@ -45,6 +45,10 @@ struct Params {
     relaxation: f32,
     compressibility: f32,
     surface_completion: f32,
+    solid_stretch: f32,
+    slope_offset: f32,
+    unused_0: f32,
+    unused_1: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {

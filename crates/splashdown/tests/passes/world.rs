@@ -41,6 +41,8 @@ pub fn params(support_ratio: f32) -> Params {
         rest_density: 1000.0,
         sound_speed: 20.0,
         solid_offset: 0.11 * SPACING,
+        solid_stretch: 1.1,
+        slope_offset: 0.05 * SPACING,
         exponent: 7.0,
         viscosity: 0.01,
         artificial_viscosity: 0.1,

@@ -129,11 +129,12 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
         contact.slope = turned(orientation, sum.xyz);
         contact.effective = support * q_of_fraction(contact.kernel_fraction);
     } else {
-        let plane = plane_through(field.effective / support);
-        contact.kernel_fraction = plane.x;
-        contact.slope = turned(orientation, plane.y / support * field.effective_gradient);
+        let stretched = params.solid_stretch * field.effective;
+        let slope = params.solid_stretch * plane_through((stretched + params.slope_offset) / support).y;
+        contact.kernel_fraction = plane_through(field.effective / support).x;
+        contact.slope = turned(orientation, slope / support * field.effective_gradient);
         contact.effective = field.effective;
-        contact.density = density_through((field.effective + params.solid_offset) / support);
+        contact.density = density_through((stretched + params.solid_offset) / support);
     }
     return contact;
 }

@@ -246,11 +246,12 @@ impl Around<'_> {
             contact.slope = rotation * sum.xyz();
             contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
         } else {
-            let (kernel_fraction, slope) = plane_through(K::WALLS, field.effective / support);
-            contact.kernel_fraction = kernel_fraction;
-            contact.slope = rotation * (slope / support * field.effective_gradient);
+            let stretched = params.solid_stretch * field.effective;
+            let (_, slope) = plane_through(K::WALLS, (stretched + params.slope_offset) / support);
+            contact.kernel_fraction = plane_through(K::WALLS, field.effective / support).0;
+            contact.slope = rotation * (params.solid_stretch * slope / support * field.effective_gradient);
             contact.effective = field.effective;
-            contact.density = density_through(K::WALLS, (field.effective + params.solid_offset) / support);
+            contact.density = density_through(K::WALLS, (stretched + params.solid_offset) / support);
         }
         contact
     }

@@ -61,9 +61,50 @@ fn a_lattice_half_a_spacing_from_a_plane_has_the_rest_density() {
         let fluid = lattice(true) / lattice(false);
         let error =
             |offset: f32| (fluid + f64::from(kernels.density((0.5 + offset) / ratio as f32).0) - 1.0).abs();
-        let offset = solid_offset(kernels, ratio as f32);
+        let offset = SolidDistance::of_density(kernels, ratio as f32).offset;
         assert!(error(offset) < 1e-3, "{kernels:?} {ratio}: off by {}", error(offset));
         // Control: without the offset the error is larger.
         assert!(error(0.0) > error(offset), "{kernels:?} {ratio}");
+    }
+}
+
+#[test]
+fn the_consistent_distance_has_the_value_and_the_slope_of_a_lattice() {
+    for (kernels, ratio) in [
+        (KernelPair::WendlandC2, 2.0_f32),
+        (KernelPair::WendlandBlend, 2.0),
+        (KernelPair::CubicSpline, 2.0),
+        (KernelPair::WendlandC2, 3.0),
+    ] {
+        let [missing, gradient] = behind(kernels, ratio);
+        let solid = SolidDistance::of_lattice(kernels, ratio);
+        assert_eq!(
+            solid.offset.to_bits(),
+            solid.slope_offset.to_bits(),
+            "the gradient is that of the density"
+        );
+        let (density, slope) = kernels.density((0.5 * solid.stretch + solid.offset) / ratio);
+        assert!((missing - density - SolidDistance::MARGIN).abs() < 1e-3, "{kernels:?} {ratio}: {density}");
+        assert!((solid.stretch * slope / gradient - 1.0).abs() < 0.06, "{kernels:?} {ratio}: {slope}");
+        // Control: the offset alone makes the gradient too small.
+        let plain = SolidDistance::of_density(kernels, ratio);
+        let slope = kernels.density((0.5 + plain.offset) / ratio).1;
+        assert!(slope / gradient < 0.97, "{kernels:?} {ratio}: {slope}");
+    }
+}
+
+/// Values computed independently.
+#[test]
+fn the_lattice_behind_a_plane_matches_independent_values() {
+    for (kernels, ratio, missing, gradient) in [
+        (KernelPair::WendlandC2, 2.0, 0.1236, 0.9501),
+        (KernelPair::WendlandBlend, 2.0, 0.1397, 0.9767),
+        (KernelPair::WendlandC2, 3.0, 0.2495, 1.2847),
+    ] {
+        let [part, slope] = behind(kernels, ratio);
+        assert!(
+            (part - missing).abs() < 1e-4 && (slope - gradient).abs() < 1e-3,
+            "{kernels:?}: {part} {slope}"
+        );
     }
 }
