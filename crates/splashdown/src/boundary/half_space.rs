@@ -145,15 +145,19 @@ fn spiky(q: f32) -> (f32, f32) {
     (t4 * t * (1.5 - t), 1.5 * t4 * (1.0 + 4.0 * q))
 }
 
-/// The distance of the plane wall whose integrals stand for the lattice of particles that would fill a body: at a distance d
-/// from the body the density is that of D at `stretch d + offset`, and its gradient that of `stretch A` at
-/// `stretch d + slope_offset`.
+/// Distances from a body, in spacings, from which [`SolidDistance`] is stretched. Nearer particles are in inner edges and corners,
+/// where the effective distance is small; the offset alone is accurate there.
+pub const STRETCHED_FROM: f32 = 0.25;
+
+/// The distance of the plane wall whose integrals stand for the lattice of particles that would fill a body. At a distance d
+/// from the body it is e = d, plus the part of d beyond [`STRETCHED_FROM`] times `stretch - 1`. The density is that of D at
+/// e + `offset`, and its gradient that of A at e + `slope_offset` times the derivative of e.
 ///
 /// The integrals assume a continuum, which a lattice is not. At half a spacing and with Wendland C2 within two spacings, the
 /// body fills 5 % more of the density than a lattice, and the gradient is that of a lattice within 3 %.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidDistance {
-    /// Factor of the distance.
+    /// Factor of the distance beyond [`STRETCHED_FROM`].
     pub stretch: f32,
     /// Offset of the distance for the density, in spacings.
     pub offset: f32,
@@ -183,7 +187,8 @@ impl SolidDistance {
         let q = q_of_density(kernels, missing);
         let steepness = kernels.density(q).1;
         let stretch = gradient / steepness;
-        let offset = (q + Self::MARGIN / steepness) * support_ratio - 0.5 * stretch;
+        let stretched = 0.5 + (stretch - 1.0) * (0.5 - STRETCHED_FROM);
+        let offset = (q + Self::MARGIN / steepness) * support_ratio - stretched;
         Self { stretch, offset, slope_offset: offset }
     }
 }

@@ -101,7 +101,7 @@ gpu_struct! {
         /// Factor of the density that the implicit pressure adds at the free surface; see
         /// [`residual`](crate::passes::implicit::residual).
         surface_completion: f32,
-        /// Factor of the distance to a body.
+        /// Factor of the distance to a body beyond [`STRETCHED_FROM`](crate::boundary::STRETCHED_FROM).
         solid_stretch: f32,
         /// Offset of the distance to a body for the gradient of the density, in metres.
         slope_offset: f32,

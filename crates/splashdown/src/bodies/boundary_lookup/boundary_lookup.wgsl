@@ -13,6 +13,15 @@ fn no_contact() -> Contact {
     return Contact(vec3(0.0), 0.0, vec3(0.0), 1e30, 0.0, 1e30, NO_BODY, 0u);
 }
 
+// The distance of SolidDistance (boundary/half_space.rs) without its offsets, and its derivative.
+fn stretched(distance: f32) -> vec2<f32> {
+    let beyond = distance - 0.25 * params.particle_spacing;
+    if (beyond > 0.0) {
+        return vec2(distance + (params.solid_stretch - 1.0) * beyond, params.solid_stretch);
+    }
+    return vec2(distance, 1.0);
+}
+
 // (D, A) of a plane wall; q is negative behind the wall.
 fn plane_through(q: f32) -> vec2<f32> {
     let plane = wall_plane_gradient(abs(q));
@@ -129,12 +138,12 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
         contact.slope = turned(orientation, sum.xyz);
         contact.effective = support * q_of_fraction(contact.kernel_fraction);
     } else {
-        let stretched = params.solid_stretch * field.effective;
-        let slope = params.solid_stretch * plane_through((stretched + params.slope_offset) / support).y;
+        let distance = stretched(field.effective);
+        let slope = distance.y * plane_through((distance.x + params.slope_offset) / support).y;
         contact.kernel_fraction = plane_through(field.effective / support).x;
         contact.slope = turned(orientation, slope / support * field.effective_gradient);
         contact.effective = field.effective;
-        contact.density = density_through((stretched + params.solid_offset) / support);
+        contact.density = density_through((distance.x + params.solid_offset) / support);
     }
     return contact;
 }

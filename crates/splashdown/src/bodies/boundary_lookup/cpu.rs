@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use super::BoundaryLookupBindings;
 use crate::bodies::field::{self, Interior};
 use crate::bodies::types::{Body, Contact};
-use crate::boundary::{Images, KernelPair, WallKernel};
+use crate::boundary::{Images, KernelPair, STRETCHED_FROM, WallKernel};
 use crate::kernel::Kernel;
 use crate::state::{Params, StepCounters};
 
@@ -246,14 +246,25 @@ impl Around<'_> {
             contact.slope = rotation * sum.xyz();
             contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
         } else {
-            let stretched = params.solid_stretch * field.effective;
+            let (stretched, steepness) = stretched(params, field.effective);
             let (_, slope) = plane_through(K::WALLS, (stretched + params.slope_offset) / support);
             contact.kernel_fraction = plane_through(K::WALLS, field.effective / support).0;
-            contact.slope = rotation * (params.solid_stretch * slope / support * field.effective_gradient);
+            contact.slope = rotation * (steepness * slope / support * field.effective_gradient);
             contact.effective = field.effective;
             contact.density = density_through(K::WALLS, (stretched + params.solid_offset) / support);
         }
         contact
+    }
+}
+
+/// The distance of [`SolidDistance`](crate::boundary::SolidDistance) without its offsets, and its derivative.
+#[inline]
+fn stretched(params: &Params, distance: f32) -> (f32, f32) {
+    let beyond = distance - STRETCHED_FROM * params.particle_spacing;
+    if beyond > 0.0 {
+        (distance + (params.solid_stretch - 1.0) * beyond, params.solid_stretch)
+    } else {
+        (distance, 1.0)
     }
 }
 

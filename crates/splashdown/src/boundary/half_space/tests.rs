@@ -83,7 +83,7 @@ fn the_consistent_distance_has_the_value_and_the_slope_of_a_lattice() {
             solid.slope_offset.to_bits(),
             "the gradient is that of the density"
         );
-        let (density, slope) = kernels.density((0.5 * solid.stretch + solid.offset) / ratio);
+        let (density, slope) = kernels.density((0.25 + 0.25 * solid.stretch + solid.offset) / ratio);
         assert!((missing - density - SolidDistance::MARGIN).abs() < 1e-3, "{kernels:?} {ratio}: {density}");
         assert!((solid.stretch * slope / gradient - 1.0).abs() < 0.06, "{kernels:?} {ratio}: {slope}");
         // Control: the offset alone makes the gradient too small.
