@@ -37,6 +37,9 @@ pub fn run(arguments: &[String]) -> Result<()> {
              figures of the last call to the page; got {option}"
         );
     }
+    if variant.is_some() && options.iter().any(|option| *option == "--page") {
+        bail!("--page runs no case: leave --variant out");
+    }
     let has = |name: &str| options.iter().any(|option| *option == name);
     let mut report = Report::default();
     if !has("--page") {
@@ -58,6 +61,11 @@ pub fn run(arguments: &[String]) -> Result<()> {
             // Without a limit: a single case takes long at full resolution.
             layers::tests(&mut command, filter, None)
         });
+    }
+    if let Some(variant) = variant
+        && !process::root().join(FIGURES).exists()
+    {
+        bail!("no case has the variant {variant}: the names are the columns of {PAGE}, for example dfsph");
     }
     record::merge(&process::root().join(FIGURES), &process::root().join(RECORDS))?;
     write_page(process::root())?;

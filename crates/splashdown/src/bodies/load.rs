@@ -460,6 +460,7 @@ fn boundary_particles(solid: &Solid, params: &Params, kernels: KernelPair) -> Ve
         places.iter().map(|&x| 1.0 / near.sum(x, |r| kernels.w(r / support) / support.powi(3))).collect();
     let mut scale = 1.0;
     if !shell {
+        // Their gradient is that of their sum, so they need no stretch.
         let offset = spacing * SolidDistance::of_density(kernels, support / spacing).offset;
         let wanted = kernels.density((0.5 * spacing + offset) / support).0;
         let (mut kernel_fraction, mut count) = (0.0f64, 0.0f64);

@@ -166,36 +166,37 @@ pub struct SolidDistance {
 }
 
 impl SolidDistance {
-    /// The part of the rest density by which a lattice beside a body is thinner than at rest, with
-    /// [`of_lattice`](Self::of_lattice). A layer that is sealed between bodies and walls can otherwise not reach the rest
-    /// density: where they meet, the quadrature of a map is off by 1 %, and disorder raises the sum of the kernel.
-    const MARGIN: f32 = 0.01;
+    /// The part of a body's density that [`of_lattice`](Self::of_lattice) leaves out, 1 % of the rest density with a support of
+    /// two spacings. A layer that is sealed between bodies and walls can otherwise not reach the rest density: where they
+    /// meet, the quadrature of a map is off by 1 %, and disorder raises the sum of the kernel.
+    const MARGIN: f32 = 1.0 / 14.0;
 
-    /// The offset gives the lattice half a spacing from a plane the rest density. The gradient has none, because it would
-    /// be 16 % too small. The gradient is then not the derivative of the density.
+    /// The offset gives the lattice half a spacing from a plane the rest density. The offset of the gradient is zero, because
+    /// with the other one the gradient would be 16 % too small. The gradient is then not the derivative of the density.
     pub fn of_density(kernels: KernelPair, support_ratio: f32) -> Self {
-        let [missing, _] = behind(kernels, support_ratio);
+        let [missing, _] = half_lattice_sums(kernels, support_ratio);
         let offset = q_of_density(kernels, missing) * support_ratio - 0.5;
         Self { stretch: 1.0, offset, slope_offset: 0.0 }
     }
 
-    /// Both the density, but for a margin, and its gradient are those of a lattice half a spacing from a plane, and the
-    /// gradient is the derivative of the density. `dfsph` determines its pressures from the density: with another gradient
-    /// the forces of bodies are not those of a potential, and they drive currents.
+    /// The density, but for a margin, is that of a lattice half a spacing from a plane. The gradient is the derivative of the
+    /// density, and that of the lattice but for up to 5 %, by which the margin reduces it. `dfsph` determines its pressures
+    /// from the density: with another gradient the forces of a body are not those of a potential, and they drive currents.
+    /// This applies to a body alone. Where images or a second body limit its part, the gradient is approximate.
     pub fn of_lattice(kernels: KernelPair, support_ratio: f32) -> Self {
-        let [missing, gradient] = behind(kernels, support_ratio);
+        let [missing, gradient] = half_lattice_sums(kernels, support_ratio);
         let q = q_of_density(kernels, missing);
         let steepness = kernels.density(q).1;
         let stretch = gradient / steepness;
         let stretched = 0.5 + (stretch - 1.0) * (0.5 - STRETCHED_FROM);
-        let offset = (q + Self::MARGIN / steepness) * support_ratio - stretched;
+        let offset = (q + Self::MARGIN * missing / steepness) * support_ratio - stretched;
         Self { stretch, offset, slope_offset: offset }
     }
 }
 
 /// The part of a lattice's density, and of H times its gradient, that comes from the points behind a plane half a spacing
 /// away.
-fn behind(kernels: KernelPair, support_ratio: f32) -> [f32; 2] {
+fn half_lattice_sums(kernels: KernelPair, support_ratio: f32) -> [f32; 2] {
     const STEP: f64 = 1e-4;
     let ratio = f64::from(support_ratio);
     let sum = |shift: f64| {

@@ -56,7 +56,7 @@ impl Kernel for WendlandC2 {
 /// A cubic lattice with this kernel and a support of two spacings does not resist a stretch along an axis: the density that is
 /// summed stays the same to second order (see [`BLEND_SHARE`]). With the function for three dimensions alone the summed
 /// density rises, and the pressure that results resists the shear of a wave, whose period is then an eighth too short. The
-/// Fourier transform of the blend is positive, so that particles do not form pairs.
+/// Fourier transform of the blend is positive for wavelengths above a fifth of a spacing, so that particles do not form pairs.
 #[derive(Clone, Copy, Debug)]
 pub struct WendlandBlend;
 

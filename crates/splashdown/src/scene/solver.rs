@@ -17,8 +17,8 @@ choices! {
     KernelKind {
         /// Wendland's C2 function, without pairing instability.
         WendlandC2 = "wendland_c2",
-        /// A blend of Wendland's C2 functions for three dimensions and for one, with which particles resist the shear of
-        /// waves least at a support ratio of 2.
+        /// A blend of Wendland's C2 functions for three dimensions and for one, which reduces the resistance of a lattice of
+        /// particles to shear at a support ratio of 2.
         WendlandBlend = "wendland_blend",
         /// The cubic spline of Monaghan and Lattanzio.
         CubicSpline = "cubic_spline",
@@ -221,5 +221,37 @@ impl Default for Solver {
     /// Those of `dfsph`.
     fn default() -> Self {
         Self::with(Method::Dfsph, DensityMode::Summation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_kernel_follows_from_the_method_and_the_support() {
+        let kernel = |keys: &str| {
+            let text = format!(
+                "[scene]\nname = \"x\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\nparticle_spacing = 0.05\n\
+                 [[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 0.5, 1]\n[solver]\n{keys}\n"
+            );
+            crate::scene::Scene::parse(&text, "x").unwrap().solver
+        };
+        for (keys, expected) in [
+            ("method = \"dfsph\"", KernelKind::WendlandBlend),
+            ("method = \"dfsph\"\nsupport_ratio = 2.05", KernelKind::WendlandBlend),
+            ("method = \"dfsph\"\nsupport_ratio = 2.1", KernelKind::WendlandC2),
+            ("method = \"dfsph\"\nsurface_tension = \"csf\"", KernelKind::WendlandC2),
+            ("method = \"dfsph\"\nkernel = \"wendland_c2\"", KernelKind::WendlandC2),
+            ("method = \"wcsph\"", KernelKind::WendlandC2),
+            ("density = \"continuity\"", KernelKind::WendlandC2),
+        ] {
+            assert_eq!(kernel(keys).kernel, expected, "{keys}");
+        }
+        let mut solver = kernel("method = \"dfsph\"");
+        solver.select_method(Method::Wcsph);
+        assert_eq!(solver.kernel, KernelKind::WendlandC2);
+        solver.select_method(Method::Dfsph);
+        assert_eq!(solver.kernel, KernelKind::WendlandBlend);
     }
 }

@@ -14,7 +14,8 @@ fn no_contact() -> Contact {
 }
 
 // The distance of SolidDistance (boundary/half_space.rs) without its offsets, and its derivative.
-fn stretched(distance: f32) -> vec2<f32> {
+fn stretched_distance(distance: f32) -> vec2<f32> {
+    // STRETCHED_FROM of boundary/half_space.rs.
     let beyond = distance - 0.25 * params.particle_spacing;
     if (beyond > 0.0) {
         return vec2(distance + (params.solid_stretch - 1.0) * beyond, params.solid_stretch);
@@ -138,7 +139,7 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
         contact.slope = turned(orientation, sum.xyz);
         contact.effective = support * q_of_fraction(contact.kernel_fraction);
     } else {
-        let distance = stretched(field.effective);
+        let distance = stretched_distance(field.effective);
         let slope = distance.y * plane_through((distance.x + params.slope_offset) / support).y;
         contact.kernel_fraction = plane_through(field.effective / support).x;
         contact.slope = turned(orientation, slope / support * field.effective_gradient);

@@ -246,7 +246,7 @@ impl Around<'_> {
             contact.slope = rotation * sum.xyz();
             contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
         } else {
-            let (stretched, steepness) = stretched(params, field.effective);
+            let (stretched, steepness) = stretched_distance(params, field.effective);
             let (_, slope) = plane_through(K::WALLS, (stretched + params.slope_offset) / support);
             contact.kernel_fraction = plane_through(K::WALLS, field.effective / support).0;
             contact.slope = rotation * (steepness * slope / support * field.effective_gradient);
@@ -259,7 +259,7 @@ impl Around<'_> {
 
 /// The distance of [`SolidDistance`](crate::boundary::SolidDistance) without its offsets, and its derivative.
 #[inline]
-fn stretched(params: &Params, distance: f32) -> (f32, f32) {
+fn stretched_distance(params: &Params, distance: f32) -> (f32, f32) {
     let beyond = distance - STRETCHED_FROM * params.particle_spacing;
     if beyond > 0.0 {
         (distance + (params.solid_stretch - 1.0) * beyond, params.solid_stretch)
@@ -287,4 +287,38 @@ fn q_of_fraction(kernels: KernelPair, kernel_fraction: f32) -> f32 {
         if plane_through(kernels, middle).0 > kernel_fraction { low = middle } else { high = middle }
     }
     0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::WendlandBlend;
+    use crate::scene::Scene;
+
+    /// The gradient that forces use is the derivative of the density, on both sides of the distance from which it is
+    /// stretched and behind the surface.
+    #[test]
+    fn the_gradient_of_a_body_is_the_derivative_of_its_density() {
+        const TEXT: &str = "[scene]\nname = \"x\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\n\
+                            particle_spacing = 0.05\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 0.5, 1]\n[solver]\n";
+        let largest_error = |solver: &str| {
+            let params = crate::schemes::params(&Scene::parse(&format!("{TEXT}{solver}"), "x").unwrap(), 1);
+            let (spacing, support) = (params.particle_spacing, params.support_radius);
+            let density = |d: f32| {
+                let (stretched, _) = stretched_distance(&params, d);
+                density_through(WendlandBlend::WALLS, (stretched + params.solid_offset) / support)
+            };
+            let distances = (-8..38).map(|i| (0.05 * i as f32 + 0.02) * spacing);
+            let errors = distances.map(|d| {
+                let (stretched, steepness) = stretched_distance(&params, d);
+                let q = (stretched + params.slope_offset) / support;
+                let slope = steepness * plane_through(WendlandBlend::WALLS, q).1 / support;
+                let step = 0.01 * spacing;
+                ((density(d - step) - density(d + step)) / (2.0 * step) - slope).abs() * support
+            });
+            errors.fold(0.0, f32::max)
+        };
+        assert!(largest_error("method = \"dfsph\"") < 0.01);
+        assert!(largest_error("method = \"wcsph\"") > 0.1, "negative control");
+    }
 }
