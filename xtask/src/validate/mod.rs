@@ -63,7 +63,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
         });
     }
     if let Some(variant) = variant
-        && !process::root().join(FIGURES).exists()
+        && !record::has_variant(&process::root().join(FIGURES), variant)?
     {
         bail!("no case has the variant {variant}: the names are the columns of {PAGE}, for example dfsph");
     }

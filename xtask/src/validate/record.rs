@@ -40,6 +40,14 @@ pub struct Record {
     pub plots: Vec<(String, [String; 2], Series, Series)>,
 }
 
+/// Whether a run with this variant has written figures.
+///
+/// # Errors
+/// If a file cannot be read.
+pub fn has_variant(folder: &Path, variant: &str) -> Result<bool> {
+    Ok(folder.exists() && values(folder)?.iter().any(|value| text(value, "variant") == variant))
+}
+
 /// Replaces the records of `from` in the files of `to`, one per case; other records remain.
 ///
 /// # Errors
