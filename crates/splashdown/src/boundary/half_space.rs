@@ -65,10 +65,7 @@ impl KernelPair {
         let c2 = 10.5 * t.powi(4) * (1.0 + 4.0 * q);
         match self {
             Self::WendlandC2 => c2,
-            Self::WendlandBlend => {
-                let share = f64::from(BLEND_SHARE);
-                (1.0 - share) * c2 + share * 6.5625 * t.powi(3) * (1.0 + 3.0 * q)
-            }
+            Self::WendlandBlend => WendlandBlend::exact(q)[0],
             Self::CubicSpline if q <= 0.5 => 6.0 * q * q * (q - 1.0) + 1.0,
             Self::CubicSpline => 2.0 * t.powi(3),
             Self::Mueller => (1.0 - q * q).powi(3),

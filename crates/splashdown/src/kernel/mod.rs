@@ -64,6 +64,18 @@ pub struct WendlandBlend;
 /// a support of two spacings offers no resistance to a stretch along an axis; with a larger one the lattice is unstable.
 pub const BLEND_SHARE: f32 = 0.35;
 
+impl WendlandBlend {
+    /// W H^3 and -q dW/dq H^3 in double precision, for sums over a lattice. q must be below one.
+    pub(crate) fn exact(q: f64) -> [f64; 2] {
+        use std::f64::consts::PI;
+        let (one, t) = (f64::from(BLEND_SHARE), 1.0 - q);
+        let three = 1.0 - one;
+        let w = three * 10.5 * t * (1.0 + 4.0 * q) + one * 6.5625 * (1.0 + 3.0 * q);
+        let g = three * 210.0 * t + one * 78.75;
+        [w * t.powi(3) / PI, g * (q * t).powi(2) / PI]
+    }
+}
+
 impl Kernel for WendlandBlend {
     const ID: u32 = 4;
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::solver::{KernelKind, Method, SurfaceTension};
 use super::things::Motion;
 use super::types::{Scene, Shape};
-use crate::kernel::BLEND_SHARE;
+use crate::kernel::WendlandBlend;
 
 /// Ratio of the speed of sound to the reference speed. With this value the density varies by at most one per
 /// cent (Monaghan 1994).
@@ -269,11 +269,7 @@ pub fn lattice_sum(method: Method, kernel: KernelKind, ratio: f64) -> f64 {
     let weight = |q: f64| match (method, kernel) {
         (Method::Mueller2003, _) => 315.0 / 64.0 * (1.0 - q * q).powi(3),
         (_, KernelKind::WendlandC2) => 10.5 * (1.0 - q).powi(4) * (1.0 + 4.0 * q),
-        (_, KernelKind::WendlandBlend) => {
-            let (three, one) = (10.5 * (1.0 - q) * (1.0 + 4.0 * q), 6.5625 * (1.0 + 3.0 * q));
-            let share = f64::from(BLEND_SHARE);
-            (1.0 - q).powi(3) * ((1.0 - share) * three + share * one)
-        }
+        (_, KernelKind::WendlandBlend) => WendlandBlend::exact(q)[0] * std::f64::consts::PI,
         (_, KernelKind::CubicSpline) if q <= 0.5 => 8.0 * (6.0 * q * q * (q - 1.0) + 1.0),
         (_, KernelKind::CubicSpline) => 16.0 * (1.0 - q).powi(3),
     };

@@ -227,28 +227,29 @@ impl Default for Solver {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Scene, SceneBuilder};
+
+    type Change = fn(SceneBuilder) -> SceneBuilder;
 
     #[test]
     fn the_kernel_follows_from_the_method_and_the_support() {
-        let kernel = |keys: &str| {
-            let text = format!(
-                "[scene]\nname = \"x\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\nparticle_spacing = 0.05\n\
-                 [[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 0.5, 1]\n[solver]\n{keys}\n"
-            );
-            crate::scene::Scene::parse(&text, "x").unwrap().solver
+        let built = |change: Change| {
+            let pool = Scene::builder("pool", 1.0).domain([0.0; 3], [1.0; 3]).particle_spacing(0.05);
+            change(pool.block([0.0; 3], [1.0, 0.5, 1.0])).build().unwrap().solver
         };
-        for (keys, expected) in [
-            ("method = \"dfsph\"", KernelKind::WendlandBlend),
-            ("method = \"dfsph\"\nsupport_ratio = 2.05", KernelKind::WendlandBlend),
-            ("method = \"dfsph\"\nsupport_ratio = 2.1", KernelKind::WendlandC2),
-            ("method = \"dfsph\"\nsurface_tension = \"csf\"", KernelKind::WendlandC2),
-            ("method = \"dfsph\"\nkernel = \"wendland_c2\"", KernelKind::WendlandC2),
-            ("method = \"wcsph\"", KernelKind::WendlandC2),
-            ("density = \"continuity\"", KernelKind::WendlandC2),
-        ] {
-            assert_eq!(kernel(keys).kernel, expected, "{keys}");
+        let cases: [(Change, KernelKind); 7] = [
+            (|scene| scene, KernelKind::WendlandBlend),
+            (|scene| scene.set("solver.support_ratio", 2.05_f32), KernelKind::WendlandBlend),
+            (|scene| scene.set("solver.support_ratio", 2.1_f32), KernelKind::WendlandC2),
+            (|scene| scene.set("solver.surface_tension", "csf"), KernelKind::WendlandC2),
+            (|scene| scene.set("solver.kernel", "wendland_c2"), KernelKind::WendlandC2),
+            (|scene| scene.set("solver.method", "wcsph"), KernelKind::WendlandC2),
+            (|scene| scene.set("solver.density", "continuity"), KernelKind::WendlandC2),
+        ];
+        for (number, (change, expected)) in cases.into_iter().enumerate() {
+            assert_eq!(built(change).kernel, expected, "case {number}");
         }
-        let mut solver = kernel("method = \"dfsph\"");
+        let mut solver = built(|scene| scene);
         solver.select_method(Method::Wcsph);
         assert_eq!(solver.kernel, KernelKind::WendlandC2);
         solver.select_method(Method::Dfsph);

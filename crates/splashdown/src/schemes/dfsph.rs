@@ -4,7 +4,7 @@
 use super::Step;
 use crate::boundary::part::Part;
 use crate::coupling::Stage;
-use crate::kernel::BLEND_SHARE;
+use crate::kernel::WendlandBlend;
 use crate::passes::implicit::residual::SMALLEST_SURFACE_GRADIENT;
 use crate::scene::KernelKind;
 
@@ -110,13 +110,7 @@ fn visit_lattice(kernel: KernelKind, ratio: f64, mut visit: impl FnMut([i32; 3],
         KernelKind::WendlandC2 => {
             (10.5 * (1.0 - q).powi(4) * (1.0 + 4.0 * q), 210.0 * q * q * (1.0 - q).powi(3))
         }
-        KernelKind::WendlandBlend => {
-            let share = f64::from(BLEND_SHARE);
-            let t = 1.0 - q;
-            let [w3, w1] = [10.5 * t.powi(4) * (1.0 + 4.0 * q), 6.5625 * t.powi(3) * (1.0 + 3.0 * q)];
-            let [slope3, slope1] = [210.0 * q * q * t.powi(3), 78.75 * (q * t).powi(2)];
-            ((1.0 - share) * w3 + share * w1, (1.0 - share) * slope3 + share * slope1)
-        }
+        KernelKind::WendlandBlend => WendlandBlend::exact(q).into(),
         KernelKind::CubicSpline if q <= 0.5 => {
             (8.0 * (6.0 * q * q * (q - 1.0) + 1.0), 48.0 * q * q * (2.0 - 3.0 * q))
         }
