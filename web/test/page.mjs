@@ -139,6 +139,28 @@ function closed(ply) {
   }
 }
 
+// A body and a second piece of fluid: the start loads a mesh and measures the initial packing.
+async function runsWithBodies() {
+  const pieces = `
+[[fluid.block]]
+position = [0.42, 0, 0.01]
+size = [0.2, 0.2, 0.2]
+[[body]]
+name = "cube"
+mesh = "cube"
+scale = 0.1
+position = [0.7, 0.1, 0.15]
+`;
+  const text = scene.replace("[solver]", `${pieces}[solver]`);
+  const { page, errors } = await open("#toml=" + encodeURIComponent(text));
+  await until("a step with a body", 120, async () => {
+    assert.deepEqual(errors, []);
+    const now = await figures(page).catch(() => undefined);
+    return now?.time > 0 && now.particles > 8 * 8 * 6;
+  });
+  await page.close();
+}
+
 async function compilesEveryPass() {
   const { page } = await open("#toml=" + encodeURIComponent(scene));
   await until("the start", 60, () => page.evaluate(() => !!window.splashdown));
@@ -231,6 +253,8 @@ try {
   const begun = Date.now();
   await runs();
   console.log("ok: runs, can be rotated and paused, exports a closed mesh");
+  await runsWithBodies();
+  console.log("ok: runs with a body and two pieces of fluid");
   console.log(`ok: ${await compilesEveryPass()} passes compile`);
   await recoversFromALostDevice();
   console.log("ok: recovers from a lost device");

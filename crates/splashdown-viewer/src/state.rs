@@ -372,6 +372,12 @@ impl State {
         }
     }
 
+    /// Counts the initial particles of the scene after a change.
+    pub fn count(&mut self) {
+        self.counted = splashdown::check::count(&self.scene);
+        self.particles_wanted = self.counted as f32;
+    }
+
     /// Opens another scene and keeps the display settings.
     pub fn open(&mut self, scene: Scene) {
         let old = std::mem::replace(self, Self::new(scene));

@@ -81,12 +81,18 @@ pub enum SimulationError {
          read"
     )]
     Count {
-        /// `positions` or `velocities`.
+        /// The quantity, such as `velocities`.
         what: &'static str,
         /// The number given.
         given: usize,
         /// The number of particles.
         expected: usize,
+    },
+    /// Two particles have the same id.
+    #[error("two particles have the id {id}: give unique ids, or none")]
+    DuplicateId {
+        /// The id.
+        id: u32,
     },
     /// A position or velocity is NaN or infinite.
     #[error("{what}[{index}] is ({}, {}, {}): give finite numbers", value[0], value[1], value[2])]

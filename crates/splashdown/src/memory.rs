@@ -50,7 +50,8 @@ fn count_in(largest_buffer: u64, per_particle: u64) -> u64 {
 
 fn largest_per_particle(scene: &Scene) -> u64 {
     let motion = if Scheme::new(scene).extras(false).corrections { CORRECTION_MATRIX } else { POSITION };
-    motion.max(surface::largest_per_particle(&scene.surface))
+    let contacts = if scene.bodies.is_empty() { 0 } else { bodies::CONTACT_BYTES };
+    motion.max(contacts).max(surface::largest_per_particle(&scene.surface))
 }
 
 /// Checks that a device can hold a number of particles of a scene. The error contains the largest number and the smallest spacing

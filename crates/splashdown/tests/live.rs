@@ -130,3 +130,35 @@ fn a_dragged_body_follows_and_does_not_leak() {
     let fallen = simulation.body_states().unwrap()[0];
     assert!(fallen.position.y < state.position.y - 0.05, "{fallen:?}");
 }
+
+/// A change of a running scene must not put scripted bodies back to where they were at the start.
+#[test]
+fn a_scripted_body_continues_its_motion_in_a_changed_scene() {
+    let text = format!(
+        "{}\n[[body]]\nname = \"paddle\"\nmesh = \"cube\"\nscale = 0.1\nposition = [0.8, 0.3, 0.2]\n\
+         move = [\"0.5*t\", \"0\", \"0\"]\n",
+        include_str!("../scenes/dam-break-small.toml")
+    );
+    let mut scene = Scene::parse(&text, "paddle.toml").unwrap();
+    scene.fluid.particle_spacing *= 1.5;
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    let start = simulation.body_states().unwrap()[0].position;
+    simulation.advance(0.1).unwrap();
+    let moved = simulation.body_states().unwrap()[0];
+    assert!((moved.position.x - start.x - 0.05).abs() < 1e-5, "{moved:?}");
+    scene.domain.max.y *= 1.25;
+    let mut next = simulation.rebuild_with(&scene).unwrap();
+    let continued = next.body_states().unwrap()[0];
+    assert!(continued.position.distance(moved.position) < 1e-5, "{continued:?}");
+    assert!((continued.velocity.x - 0.5).abs() < 1e-5, "{continued:?}");
+}
+
+#[test]
+fn a_wider_support_of_the_surface_needs_another_grid() {
+    let mut scene = scene();
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    scene.surface.cell_size *= 1.1;
+    assert!(simulation.update_parameters(&scene).unwrap());
+    scene.surface.support_ratio *= 1.5;
+    assert!(!simulation.update_parameters(&scene).unwrap());
+}

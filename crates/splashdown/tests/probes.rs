@@ -2,7 +2,7 @@
 
 use splashdown::probes::ProbeRows;
 use splashdown::scene::Scene;
-use splashdown::{Event, Run, RunOptions, Simulation};
+use splashdown::{Device, Event, Run, RunOptions, Simulation};
 use splashdown_gpu::testing;
 
 /// A tank of still water, 0.4 m deep, with a cube of 0.15 m away from the walls.
@@ -169,7 +169,7 @@ fn the_measured_flow_equals_the_emitted_flow() {
 fn a_run_returns_probe_rows_with_its_frames() {
     let mut scene = Scene::parse(JET, "jet.toml").unwrap();
     scene.probes.truncate(1);
-    let options = RunOptions::new(&scene).with_device(splashdown::Device::Cpu).with_frames(2);
+    let options = RunOptions::new(&scene).with_device(Device::Cpu).with_frames(2);
     let mut counts = Vec::new();
     for event in Run::new(&scene, options).unwrap() {
         if let Event::Frame(frame) = event.unwrap() {
@@ -184,11 +184,26 @@ fn a_run_returns_probe_rows_with_its_frames() {
 fn a_probe_inside_a_body_is_reported() {
     let text = TANK.replace("position = [0, 0.2, 0.34]", "position = [0.2, 0.2, 0.2]");
     let scene = Scene::parse(&text, "tank.toml").unwrap();
-    let options = RunOptions::new(&scene).with_device(splashdown::Device::Cpu).with_frames(0);
+    let options = RunOptions::new(&scene).with_device(Device::Cpu).with_frames(0);
     let warnings: Vec<String> = Run::new(&scene, options)
         .unwrap()
         .filter_map(|event| if let Event::Warning(text) = event.unwrap() { Some(text) } else { None })
         .collect();
     assert!(warnings[0].contains("probe \"wall\" is 75 mm inside body \"cube\""), "{warnings:?}");
     assert_eq!(warnings.len(), 1, "{warnings:?}");
+}
+
+/// A frame of the caller may be longer than one of the scene.
+#[test]
+fn no_row_is_lost_in_a_long_frame() {
+    let text =
+        TANK.replace("interval = 0.05", "interval = 0.001").replace("frame_rate = 5", "frame_rate = 50");
+    let scene = Scene::parse(&text, "tank.toml").unwrap();
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    simulation.advance(0.4).unwrap();
+    let rows = simulation.take_probe_rows();
+    let times: Vec<f64> = rows[0].iter().map(|row| row[0]).collect();
+    // A row is due once per interval, or once per step where steps are longer.
+    let most = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    assert!(times.len() > 200 && most < 0.004, "{} rows, {most} s apart", times.len());
 }

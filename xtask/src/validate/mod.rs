@@ -29,16 +29,27 @@ pub fn run(arguments: &[String]) -> Result<()> {
     let (options, cases): (Vec<&String>, Vec<&String>) =
         arguments.iter().partition(|argument| argument.starts_with('-'));
     let variant = options.iter().find_map(|option| option.strip_prefix("--variant="));
-    let is_known = |option: &str| ["--quick", "--page"].contains(&option) || option.starts_with("--variant=");
+    let across = options.iter().find_map(|option| option.strip_prefix("--across="));
+    let device = options.iter().find_map(|option| option.strip_prefix("--device="));
+    let is_known = |option: &str| {
+        ["--quick", "--page"].contains(&option)
+            || ["--variant=", "--across=", "--device="].iter().any(|start| option.starts_with(start))
+    };
     if let Some(option) = options.iter().find(|option| !is_known(option.as_str())) {
         bail!(
             "validate takes names of tests, for example `waves`, or nothing for all; --quick leaves out the finest \
-             resolution, --variant=NAME runs one column of each case, for example dfsph, and --page only adds the \
-             figures of the last call to the page; got {option}"
+             resolution, --variant=NAME runs one column of each case, for example dfsph, --across=60,120 other \
+             resolutions, --device=gpu runs on a GPU, and --page only adds the figures of the last call to the page; \
+             got {option}"
         );
     }
-    if variant.is_some() && options.iter().any(|option| *option == "--page") {
-        bail!("--page runs no case: leave --variant out");
+    if options.len() > 1 && options.iter().any(|option| *option == "--page") {
+        bail!("--page runs no case: leave the other options out");
+    }
+    if let Some(list) = across
+        && !list.split(',').all(|number| number.parse::<u32>().is_ok_and(|number| number > 0))
+    {
+        bail!("--across takes numbers of spacings, for example 60,120, got {list}");
     }
     let has = |name: &str| options.iter().any(|option| *option == name);
     let mut report = Report::default();
@@ -55,8 +66,10 @@ pub fn run(arguments: &[String]) -> Result<()> {
             command.args(["--test-threads", "1"]).args(&cases);
             let level = if has("--quick") { "quick" } else { "1" };
             command.env("SPLASHDOWN_FULL", level).env("SPLASHDOWN_FIGURES", &folder);
-            if let Some(variant) = variant {
-                command.env("SPLASHDOWN_VARIANT", variant);
+            for (name, value) in [("VARIANT", variant), ("ACROSS", across), ("DEVICE", device)] {
+                if let Some(value) = value {
+                    command.env(format!("SPLASHDOWN_{name}"), value);
+                }
             }
             // Without a limit: a single case takes long at full resolution.
             layers::tests(&mut command, filter, None)

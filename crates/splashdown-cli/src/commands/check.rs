@@ -64,12 +64,15 @@ struct Speed {
 
 /// Checks a scene and prints the result.
 pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
-    let checked = scene_file::load(&arguments.scene);
-    let scene = checked.inspect_err(|failure| {
-        if arguments.json {
-            console::print_json(&Line::error(failure));
-        }
-    })?;
+    let outcome = execute(arguments);
+    if let (Err(failure), true) = (&outcome, arguments.json) {
+        console::print_json(&Line::error(failure));
+    }
+    outcome
+}
+
+fn execute(arguments: &CheckArguments) -> Result<(), Failure> {
+    let scene = scene_file::load(&arguments.scene)?;
     let bar = Bar::new(Verbosity::Normal, arguments.json);
     let prepared = prepare(&scene, &bar.preparation());
     bar.clear();

@@ -100,6 +100,7 @@ impl Viewer {
     fn revert_edits(&mut self) {
         if let Some(snapshot) = self.engine.snapshot().filter(|_| self.state.timeline.is_none()) {
             self.state.scene = snapshot.opened.scene.clone();
+            self.state.count();
             self.state.pouring = edit::has_tap(&self.state.scene);
         }
     }

@@ -210,11 +210,12 @@ impl Viewer {
         self.restart();
     }
 
-    /// Shows the simulation again instead of a run that was played.
+    /// Shows the simulation again instead of a run that was played, and ends the recording of what was shown.
     fn leave_playback(&mut self) {
         self.state.timeline = None;
         #[cfg(not(target_arch = "wasm32"))]
         {
+            self.end_recording();
             self.player = None;
         }
     }

@@ -29,9 +29,7 @@ impl Viewer {
         let repaint = ctx.clone();
         let scene = run.scene().clone();
         let (playback, timeline, problem) = Playback::start(run, MEMORY, move || repaint.request_repaint())?;
-        if self.recording.is_some() {
-            self.toggle_recording(ctx.input(|input| input.time));
-        }
+        self.end_recording();
         self.stop_simulation();
         self.state.open(scene);
         self.state.playing = false;

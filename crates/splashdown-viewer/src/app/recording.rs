@@ -15,13 +15,18 @@ pub(super) struct Recording {
 }
 
 impl Viewer {
+    /// Completes the film that is being recorded, if any.
+    pub(super) fn end_recording(&mut self) {
+        let Some(Recording { recorder, .. }) = self.recording.take() else { return };
+        self.state.recorded = None;
+        let folder = format!("{} ({} pictures)", recorder.folder().display(), recorder.frames());
+        let exported = recorder.finish().map(|()| folder).map_err(|error| error.to_string());
+        self.report_export("the film", exported, self.requested.shown_at);
+    }
+
     pub(super) fn toggle_recording(&mut self, now: f64) {
-        if let Some(recording) = self.recording.take() {
-            self.state.recorded = None;
-            let recorder = recording.recorder;
-            let folder = format!("{} ({} pictures)", recorder.folder().display(), recorder.frames());
-            let exported = recorder.finish().map(|()| folder).map_err(|error| error.to_string());
-            self.report_export("the film", exported, now);
+        if self.recording.is_some() {
+            self.end_recording();
             return;
         }
         let name = std::path::PathBuf::from(format!("{}-film", self.state.scene.name));

@@ -190,7 +190,6 @@ pub fn finish(state: &mut State, before: Scene, actions: &mut Vec<Action>, now: 
 pub(super) fn start_again(state: &mut State, actions: &mut Vec<Action>) {
     state.playing = false;
     state.pouring = edit::has_tap(&state.scene);
-    state.counted = splashdown::check::count(&state.scene);
-    state.particles_wanted = state.counted as f32;
+    state.count();
     actions.push(Action::Reset);
 }

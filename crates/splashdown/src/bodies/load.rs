@@ -135,6 +135,13 @@ pub struct LoadedBody {
 }
 
 impl LoadedBody {
+    /// Moves a scripted body to where its script is at the start of a simulation at this time in s.
+    pub(crate) fn start_at(&mut self, time: f64) {
+        if let Some(script) = &self.script {
+            follow(&mut self.state, script, time);
+        }
+    }
+
     /// The mass of a dynamic body in kg; 1 for other bodies.
     pub fn mass(&self) -> f32 {
         if self.density > 0.0 { self.density * self.solid.mass.volume } else { 1.0 }
@@ -277,10 +284,7 @@ fn load_one(
         Motion::Static => {}
         Motion::Scripted(written) => {
             state.kind = Body::SCRIPTED;
-            let pose = written.pose(0.0);
-            state.position = pose.position;
-            state.orientation = Vec4::from(pose.orientation);
-            (state.velocity, state.angular_velocity) = (pose.velocity, pose.angular_velocity);
+            follow(&mut state, written, 0.0);
             script = Some(written.clone());
         }
         Motion::Dynamic { density, velocity, angular_velocity, hinge } => {
@@ -319,6 +323,14 @@ fn load_one(
     let density = if let Motion::Dynamic { density, .. } = body.motion { density } else { 0.0 };
     let (name, contact) = (body.name.clone(), body.contact);
     Ok(LoadedBody { name, solid, state, samples, script, colour: body.colour, contact, density })
+}
+
+/// Gives a body the pose and the velocities of its script at a time in s.
+fn follow(state: &mut Body, script: &Script, time: f64) {
+    let pose = script.pose(time);
+    state.position = pose.position;
+    state.orientation = Vec4::from(pose.orientation);
+    (state.velocity, state.angular_velocity) = (pose.velocity, pose.angular_velocity);
 }
 
 /// The solids of the static bodies.

@@ -116,6 +116,9 @@ impl BodyState {
     }
 }
 
+/// Bytes per particle of the contacts, of which each particle has two.
+pub(crate) const CONTACT_BYTES: u64 = 2 * size_of::<Contact>() as u64;
+
 /// The passes of this module.
 pub fn passes() -> Vec<&'static PassDesc> {
     [

@@ -22,7 +22,7 @@ use crate::bodies::{Bodies, Body};
 use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::scene::{Domain, Probe, Quantity, Scene};
 
-/// Additional rows, for frames that are longer than those of the scene.
+/// Additional rows, for rounding and for rows that were due before the frame.
 const SPARE_ROWS: u32 = 64;
 
 /// The passes of this module.
@@ -62,6 +62,8 @@ pub struct Probes {
     /// The number of columns of each probe.
     columns: Vec<usize>,
     points: Vec<ProbePoint>,
+    /// The longest frame in s whose rows fit.
+    longest_frame: f32,
     has_flow: bool,
     probes: Buffer<ProbePoint>,
     /// The bodies; a single unused one if the scene has none.
@@ -85,18 +87,14 @@ impl Probes {
         if scene.probes.is_empty() {
             return Ok(None);
         }
-        let mut rows = 0;
-        let mut accounts = vec![0; scene.probes.len() * Account::WORDS];
-        let mut points = Vec::new();
-        for (probe, account) in scene.probes.iter().zip(accounts.chunks_exact_mut(Account::WORDS)) {
-            let mut point = point_of(probe, scene);
+        let mut points: Vec<ProbePoint> = scene.probes.iter().map(|probe| point_of(probe, scene)).collect();
+        let mut accounts = vec![0; points.len() * Account::WORDS];
+        for (point, account) in points.iter().zip(accounts.chunks_exact_mut(Account::WORDS)) {
             account[Account::NEXT] = point.interval.to_bits();
-            point.first_row = rows;
-            point.most_rows = (scene.frame_duration() / point.interval).ceil() as u32 + SPARE_ROWS;
-            rows += point.most_rows;
-            points.push(point);
         }
+        let rows = assign_rows(&mut points, scene.frame_duration());
         Ok(Some(Self {
+            longest_frame: scene.frame_duration(),
             columns: scene.probes.iter().map(|probe| columns(probe).len()).collect(),
             has_flow: points.iter().any(|point| point.kind == ProbePoint::FLOW),
             probes: executor.create_from("probes", &points)?,
@@ -110,6 +108,20 @@ impl Probes {
             rows: executor.create("probe_rows", rows as usize * ROW)?,
             points,
         }))
+    }
+
+    /// Makes room for the rows of a frame of this many seconds. Call it between two frames, when no rows are stored.
+    ///
+    /// # Errors
+    /// As [`Executor::create`].
+    pub(crate) fn reserve(&mut self, executor: &mut Executor, seconds: f32) -> Result<(), GpuError> {
+        if seconds <= self.longest_frame {
+            return Ok(());
+        }
+        let rows = assign_rows(&mut self.points, seconds);
+        executor.resize(&mut self.rows, rows as usize * ROW)?;
+        self.longest_frame = seconds;
+        executor.write(self.probes, &self.points)
     }
 
     /// The buffers of the probes' state from step to step.
@@ -148,6 +160,17 @@ impl Probes {
         executor.write(self.accounts, &accounts)?;
         Ok(taken)
     }
+}
+
+/// Gives each probe its part of the rows, for frames of up to this many seconds. Returns the number of all rows.
+fn assign_rows(points: &mut [ProbePoint], seconds: f32) -> u32 {
+    let mut rows = 0;
+    for point in points {
+        point.first_row = rows;
+        point.most_rows = (seconds / point.interval).ceil() as u32 + SPARE_ROWS;
+        rows += point.most_rows;
+    }
+    rows
 }
 
 impl Coupling for Probes {

@@ -209,6 +209,16 @@ impl Derived {
         Self::falling_dt(scene, if Self::has_implicit_viscosity(scene) { 0.1 } else { 0.02 })
     }
 
+    /// The largest number of iterations of the implicit pressure in a step: that of the scene, or a quarter of the spacings
+    /// along the longest side of the domain. An iteration carries a change of the pressure over one support radius, so that
+    /// an impact on wide and deep water needs more iterations the finer it is resolved. 40 are enough for most scenes, and
+    /// more than 400 would take longer than the shorter steps that follow steps without convergence.
+    pub(crate) fn max_iterations(scene: &Scene) -> u32 {
+        let size = scene.domain.max - scene.domain.min;
+        let across = 0.25 * size.max_element() / scene.fluid.particle_spacing;
+        scene.solver.max_iterations.unwrap_or(across.clamp(40.0, 400.0) as u32)
+    }
+
     /// The time step in s in which body forces move a particle by this many spacings.
     fn falling_dt(scene: &Scene, spacings: f32) -> f32 {
         let oscillation = scene.domain.oscillation.map_or(0.0, |oscillation| {

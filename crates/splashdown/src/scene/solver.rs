@@ -110,8 +110,9 @@ pub struct Solver {
     /// Largest mean error of the density that the implicit pressure of `dfsph` may have, as a part of the rest density.
     /// The mean over each group of 64 particles in the order of the cells may be five times as large.
     pub tolerance: f32,
-    /// Largest number of iterations of the implicit pressure in a step.
-    pub max_iterations: u32,
+    /// Largest number of iterations of the implicit pressure in a step. `None`: a quarter of the spacings along the longest
+    /// side of the domain, at least 40 and at most 400.
+    pub max_iterations: Option<u32>,
 }
 
 impl Solver {
@@ -157,7 +158,7 @@ impl Solver {
             min_dt: 1e-7,
             sort: Sort::Counting,
             tolerance: Self::usual_tolerance(method, SurfaceTension::None),
-            max_iterations: 40,
+            max_iterations: None,
         }
     }
 

@@ -68,7 +68,7 @@ impl Scheme {
             is_density_integrated: scene.solver.method == Method::Wcsph
                 && scene.solver.density == DensityMode::Continuity,
             surface_tension: scene.solver.surface_tension,
-            max_iterations: scene.solver.max_iterations,
+            max_iterations: Derived::max_iterations(scene),
             has_implicit_viscosity: Derived::has_implicit_viscosity(scene),
         }
     }

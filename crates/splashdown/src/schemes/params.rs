@@ -107,7 +107,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         boundary_viscosity,
         is_implicit: u32::from(scheme.is_implicit()),
         tolerance: solver.tolerance,
-        max_iterations: solver.max_iterations,
+        max_iterations: Derived::max_iterations(scene),
         longest_motion: if scheme.is_implicit() {
             dfsph::longest_motion(solver.cfl_factor, solver.support_ratio)
         } else {

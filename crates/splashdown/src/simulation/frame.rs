@@ -67,10 +67,13 @@ impl Simulation {
             self.stats.steps_in_frame = 0;
             return Ok(());
         }
+        if let Some(probes) = &mut self.probes {
+            probes.reserve(&mut self.executor, seconds)?;
+        }
         if let Some(bodies) = &self.bodies {
             bodies.begin_frame(&mut self.executor, self.stats.time, f64::from(seconds))?;
         }
-        self.executor.write(self.fields.duration, &[seconds])?;
+        self.executor.write(self.fields.frame_times, &StepState::frame_times(seconds, self.stats.time))?;
         self.executor.run(&self.begin)?;
         self.frame = Some(FrameInProgress { duration: seconds, submitted: 0, pending: None, state: None });
         Ok(())

@@ -62,7 +62,8 @@ impl Simulation {
 
     /// Continues with another scene that differs in parameters only: gravity, the material of the fluid, the
     /// coefficients of the solver, and settings that do not affect motion (camera, picture, output, surface, foam). Returns
-    /// false, and changes nothing, if the scene differs in more; use [`rebuild_with`](Self::rebuild_with) then.
+    /// false, and changes nothing, if the scene differs in more; use [`rebuild_with`](Self::rebuild_with) then. A wider
+    /// support of the surface is more: the surface uses the grid of the simulation.
     ///
     /// # Errors
     /// Those of the device.
@@ -95,7 +96,8 @@ impl Simulation {
         };
         // The passes of a step depend on how the viscosity is integrated.
         let has_implicit_viscosity = |scene| Scheme::new(scene).has_implicit_viscosity();
-        if twin != *old || has_implicit_viscosity(scene) != has_implicit_viscosity(old) {
+        let is_wider = scene.surface.support_ratio > old.surface.support_ratio;
+        if is_wider || twin != *old || has_implicit_viscosity(scene) != has_implicit_viscosity(old) {
             return Ok(false);
         }
         // The speed of sound must not decrease: the state of the fluid would be too compressed for a softer equation
@@ -128,7 +130,8 @@ impl Simulation {
     pub async fn carry_over_async(&mut self, scene: &Scene) -> Result<Self, SimulationError> {
         let mut particles = self.particles_async().await?;
         let states = self.body_states_async().await?;
-        let loaded = Self::load_bodies(scene, &|_, _| {})?;
+        let mut loaded = Self::load_bodies(scene, &|_, _| {})?;
+        loaded.iter_mut().for_each(|body| body.start_at(self.stats.time));
         let place = |name: &str| self.scene.bodies.iter().position(|old| old.name == name);
         let free = |motion: &Motion| matches!(motion, Motion::Dynamic { .. });
         let kept: Vec<Option<BodyState>> = scene

@@ -140,16 +140,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// Reduces the next time step to what this speed allows, by the formula of [`end_step`](crate::state::end_step).
+    /// Reduces the next time step to what this speed allows.
     pub(super) async fn limit_time_step(&mut self, speed: f32) -> Result<(), SimulationError> {
-        let Params { support_radius, sound_speed, cfl_factor, particle_spacing, min_dt, .. } = self.params;
-        let by_motion = cfl_factor * particle_spacing / speed.max(1e-20);
-        let allowed = if self.params.is_implicit == 1 {
-            by_motion
-        } else {
-            (cfl_factor * 0.5 * support_radius / (sound_speed + speed)).min(0.4 * by_motion)
-        };
-        let allowed = allowed.max(min_dt);
+        let allowed = self.params.longest_step(speed, 0.0).max(self.params.min_dt);
         let state = self.executor.fetch(self.fields.state).await?[0];
         self.stable_dt = state.stable_dt.min(allowed);
         let state = StepState { stable_dt: self.stable_dt, dt: self.stable_dt, ..state };
@@ -180,6 +173,44 @@ mod tests {
             .build()
             .unwrap();
         Simulation::new(&scene, &Device::Cpu).unwrap()
+    }
+
+    /// Thousands of short steps: a running sum in single precision would be off by a thousandth.
+    #[test]
+    fn the_time_on_the_device_is_that_of_the_host() {
+        let mut simulation = simulation();
+        let mut scene = simulation.scene().clone();
+        scene.solver.max_dt = 1e-4;
+        assert!(simulation.update_parameters(&scene).unwrap());
+        for _ in 0..40 {
+            simulation.advance(0.1).unwrap();
+        }
+        let stats = simulation.stats();
+        assert!(stats.steps >= 40_000 && stats.time > 3.99, "{stats:?}");
+        let state = simulation.executor.read(simulation.fields.state).unwrap()[0];
+        assert!((f64::from(state.time) - stats.time).abs() < 1e-6, "{} and {}", state.time, stats.time);
+    }
+
+    #[test]
+    fn particles_of_a_program_need_unique_ids_and_complete_quantities() {
+        let mut simulation = simulation();
+        let scene = simulation.scene().clone();
+        let particles = simulation.particles().unwrap();
+        let with =
+            |particles| Simulation::with_particles(&scene, CpuExecutor::new().into(), &particles).map(drop);
+        with(particles.clone()).unwrap();
+        let mut twins = particles.clone();
+        twins.ids[3] = twins.ids[7];
+        let id = twins.ids[7];
+        assert!(matches!(with(twins), Err(SimulationError::DuplicateId { id: found }) if found == id));
+        let mut fewer = particles.clone();
+        fewer.velocities.pop();
+        let message = with(fewer).unwrap_err().to_string();
+        let n = particles.len();
+        assert!(
+            message.starts_with(&format!("{} velocities are given, but there are {n}", n - 1)),
+            "{message}"
+        );
     }
 
     #[test]

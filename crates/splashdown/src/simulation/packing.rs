@@ -10,12 +10,11 @@
 //! *Where the density is integrated*, a body exerts no pressure at the start, however close the particles are, and the
 //! fluid may start at its surface. Only particles farther than the support radius from bodies count there.
 
-use std::time::Instant;
-
 use glam::{Vec3, Vec4};
 use serde::Serialize;
 use splashdown_gpu::{CpuExecutor, block_on};
 use splashdown_io::Particles;
+use web_time::Instant;
 
 use super::Simulation;
 use crate::bodies::{Body, LoadedBody};

@@ -71,7 +71,7 @@ fn forces(checkpoint: &Checkpoint, executor: Executor, part: Part) -> Forces {
     recording.append(&schemes::part_of_forces(scheme, cells, fields, &couplings, count, part));
     let sums = couplings.bodies.unwrap().sums;
     let executor = &mut simulation.executor;
-    executor.write(fields.duration, &[0.01]).unwrap();
+    executor.write(fields.frame_times, &[0.01, 0.0]).unwrap();
     executor.write(sums, &vec![0; sums.len() as usize]).unwrap();
     executor.run(&recording).unwrap();
     let words = executor.read(sums).unwrap();

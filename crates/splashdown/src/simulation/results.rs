@@ -7,7 +7,7 @@ use super::Simulation;
 use crate::bodies::{Bodies, BodyState};
 use crate::monitor::{Findings, Monitor, Observed};
 use crate::scene::{Probe, Quantity, SurfaceSettings};
-use crate::state::{Carried, CarriedArrays, IDS, POSITIONS, Values};
+use crate::state::{Carried, CarriedArrays, IDS, POSITIONS, StepState, Values};
 use crate::surface::{Surface, SurfaceInput, SurfaceParams, SurfaceStats, Walls};
 use crate::{SimulationError, Stats};
 
@@ -146,7 +146,7 @@ impl Simulation {
         let mut recording = Recording::new("sort");
         recording.append(&self.begin);
         self.cells.record_sort(&mut recording, &self.fields, self.fields.sorted_ids);
-        self.executor.write(self.fields.duration, &[0.0])?;
+        self.executor.write(self.fields.frame_times, &StepState::frame_times(0.0, self.stats.time))?;
         Ok(self.executor.run(&recording)?)
     }
 

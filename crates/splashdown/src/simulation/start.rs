@@ -3,6 +3,7 @@
 use std::mem::offset_of;
 
 use glam::Vec3;
+use rayon::prelude::*;
 use splashdown_gpu::{Executor, Flag, block_on};
 use splashdown_io::Particles;
 
@@ -76,17 +77,19 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// Starts from these particles instead of the scene's blocks. `ids`, if given, must be unique; `densities` in
-    /// kg/m^3, if given, are the initial values of the continuity equation. Particles that lie outside the domain, are
-    /// not finite, or have a density that is not positive are removed and counted.
+    /// Starts from these particles instead of the scene's blocks. Of the quantities besides positions, each has one value
+    /// per particle or none: velocities in m/s (else zero), ids (unique; else the indices), densities in kg/m^3, the initial
+    /// values of the continuity equation, and pressures in Pa, with which the iterations of `dfsph` begin. Particles that
+    /// lie outside the domain, are not finite, or have a density that is not positive are removed and counted.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// [`SimulationError::Count`] and [`SimulationError::DuplicateId`]; otherwise as [`new`](Self::new).
     pub fn with_particles(
         scene: &Scene,
         executor: Executor,
         particles: &Particles,
     ) -> Result<Self, SimulationError> {
+        check_particles(particles)?;
         let bodies = Self::load_bodies(scene, &|_, _| {})?;
         block_on(Self::with_bodies(scene, executor, particles, bodies, Scheme::new(scene).carried()))
     }
@@ -120,7 +123,7 @@ impl Simulation {
         let mut simulation = Self::assemble(scene, executor, capacity, next_id, loaded, &loaded_flow, table)?;
         simulation.initial = initial;
         upload(&mut simulation.executor, &simulation.fields, particles, &simulation.params)?;
-        simulation.executor.write(simulation.fields.duration, &[0.0])?;
+        simulation.executor.write(simulation.fields.frame_times, &StepState::frame_times(0.0, 0.0))?;
         simulation.executor.run(&simulation.prime)?;
         simulation.count().await?;
         // The estimate of the scene does not know the velocities of particles from files and programs.
@@ -162,7 +165,7 @@ impl Simulation {
         };
         let flow =
             if loaded_flow.is_empty() { None } else { Some(Flow::new(&mut executor, loaded_flow, next_id)?) };
-        let stable_dt = Derived::without_particles(scene).dt_estimate.clamp(params.min_dt, params.max_dt);
+        let stable_dt = Derived::without_particles(scene).dt_estimate.min(params.max_dt).max(params.min_dt);
         let first = StepState { stable_dt, dt: stable_dt, ..bytemuck::Zeroable::zeroed() };
         executor.write(fields.state, &[first])?;
 
@@ -226,6 +229,26 @@ impl Simulation {
         let most = if scheme.is_implicit() { MOST_IMPLICIT_STEPS } else { MOST_STEPS };
         self.schedule = Schedule::new(phases, &end_step, done, most);
         Ok(())
+    }
+}
+
+/// Checks the numbers of values and the ids of particles from a program.
+fn check_particles(particles: &Particles) -> Result<(), SimulationError> {
+    let expected = particles.positions.len();
+    let counts = [
+        ("velocities", particles.velocities.len()),
+        ("densities", particles.densities.len()),
+        ("pressures", particles.pressures.len()),
+        ("ids", particles.ids.len()),
+    ];
+    if let Some((what, given)) = counts.into_iter().find(|&(_, given)| given != 0 && given != expected) {
+        return Err(SimulationError::Count { what, given, expected });
+    }
+    let mut ids = particles.ids.clone();
+    ids.par_sort_unstable();
+    match ids.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(SimulationError::DuplicateId { id: pair[0] }),
+        None => Ok(()),
     }
 }
 

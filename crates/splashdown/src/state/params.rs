@@ -133,6 +133,21 @@ impl Params {
         }
     }
 
+    /// The longest stable step in s for the largest speed in m/s and acceleration in m/s^2 of the particles, without the
+    /// limit by the implicit pressure (Monaghan 1992; viscosity: Morris et al. 1997).
+    pub fn longest_step(&self, speed: f32, acceleration: f32) -> f32 {
+        let (h, c) = (0.5 * self.support_radius, self.cfl_factor);
+        let by_motion = if self.is_implicit == 1 {
+            c * self.particle_spacing / speed.max(1e-20)
+        } else {
+            (c * h / (self.sound_speed + speed))
+                .min(c * (h / acceleration.max(1e-20)).sqrt())
+                .min(c * 0.4 * self.particle_spacing / speed.max(1e-20))
+                .min(0.17 * h / (self.density_diffusion * self.sound_speed).max(1e-20))
+        };
+        by_motion.min(self.max_dt).min(0.125 * h * h / self.viscosity.max(1e-20))
+    }
+
     /// The pressure in Pa at a density in kg/m^3: p = rho0 c0^2 / exponent ((rho/rho0)^exponent - 1) (Cole 1948).
     #[inline(always)]
     pub fn pressure_at(&self, density: f32) -> f32 {

@@ -78,6 +78,20 @@ fn step_length(stable: f32, remaining: f32, is_first: bool) -> f32 {
     return select(0.5 * remaining, remaining, remaining <= stable);
 }
 
+// The longest stable step without the limit by the implicit pressure; see Params::longest_step.
+fn longest_step(speed: f32, acceleration: f32) -> f32 {
+    let h = 0.5 * params.support_radius;
+    let c = params.cfl_factor;
+    var longest = min(params.max_dt, 0.125 * h * h / max(params.viscosity, 1e-20));
+    if (params.is_implicit == 1u) {
+        return min(longest, c * params.particle_spacing / max(speed, 1e-20));
+    }
+    longest = min(longest, c * h / (params.sound_speed + speed));
+    longest = min(longest, c * sqrt(h / max(acceleration, 1e-20)));
+    longest = min(longest, c * 0.4 * params.particle_spacing / max(speed, 1e-20));
+    return min(longest, 0.17 * h / max(params.density_diffusion * params.sound_speed, 1e-20));
+}
+
 fn body_acceleration(time: f32) -> vec3<f32> {
     return params.gravity + params.oscillation * sin(params.oscillation_rate * time);
 }

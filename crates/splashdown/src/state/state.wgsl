@@ -19,7 +19,7 @@ struct StepState {
     viscous_iterations: u32,
     most_viscous_iterations: u32,
     viscous_residual: f32,
-    unused: u32,
+    frame_start: f32,
 }
 
 // True if the step completes its frame. Both numbers are stored, so that all passes agree.

@@ -14,7 +14,8 @@ gpu_struct! {
         dt: f32,
         /// The largest stable time step; `dt` may be shorter to reach the end of a frame.
         stable_dt: f32,
-        /// Simulated time in seconds.
+        /// Simulated time in seconds: that of the frame's start plus what has passed since, so that the rounding errors of
+        /// thousands of steps do not add up.
         time: f32,
         /// The remaining time of the frame in seconds.
         remaining: f32,
@@ -49,12 +50,17 @@ gpu_struct! {
         most_viscous_iterations: u32,
         /// Largest residual of the viscosity that was accepted in this frame, as a part of its reference.
         viscous_residual: f32,
-        /// Padding.
-        unused: u32,
+        /// Simulated time at the start of the frame in seconds, from the host.
+        frame_start: f32,
     }
 }
 
 impl StepState {
+    /// The words of the buffer from which a frame begins: its length and its start in seconds.
+    pub fn frame_times(length: f32, start: f64) -> [f32; 2] {
+        [length, start as f32]
+    }
+
     /// True if the step completes its frame. Both numbers are stored, so that all passes agree.
     pub fn is_last_step(&self) -> bool {
         self.dt >= self.remaining

@@ -21,30 +21,21 @@ fn finish_step() {
     counters[COUNTER_MAX_ACCELERATION] = 0u;
     counters[COUNTER_MAX_EXCESS] = 0u;
 
-    let h = 0.5 * params.support_radius;
-    let c = params.cfl_factor;
     let is_slow = counters[COUNTER_SHORTEN] != 0u;
     counters[COUNTER_SHORTEN] = 0u;
     let pressure = bitcast<f32>(counters[COUNTER_MAX_PRESSURE]);
     counters[COUNTER_MAX_PRESSURE] = 0u;
-    var stable = params.max_dt;
+    var stable = longest_step(speed, acceleration);
     if (params.is_implicit == 1u) {
         stable = min(stable, select(1.5 * state.stable_dt, 0.7 * min(state.stable_dt, state.dt), is_slow));
-        stable = min(stable, c * params.particle_spacing / max(speed, 1e-20));
         stable = min(stable, pressure_limit(pressure));
     } else {
         stable = min(stable, 1.1 * state.stable_dt);
-        stable = min(stable, c * h / (params.sound_speed + speed));
-        stable = min(stable, c * sqrt(h / max(acceleration, 1e-20)));
-        stable = min(stable, c * 0.4 * params.particle_spacing / max(speed, 1e-20));
-        stable = min(stable, 0.17 * h / max(params.density_diffusion * params.sound_speed, 1e-20));
     }
-    stable = min(stable, 0.125 * h * h / max(params.viscosity, 1e-20));
     if (stable < params.min_dt) {
         stable = params.min_dt;
         state.too_small = 1u;
     }
-    state.time += state.dt;
     state.steps += 1u;
     state.stable_dt = stable;
     state.max_speed = speed;
@@ -58,4 +49,5 @@ fn finish_step() {
         state.remaining -= state.dt;
         state.dt = step_length(stable, state.remaining, false);
     }
+    state.time = state.frame_start + (state.frame_duration - state.remaining);
 }

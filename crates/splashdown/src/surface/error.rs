@@ -41,7 +41,7 @@ pub enum SurfaceError {
     /// The cells of the neighbour grid are smaller than the support radius.
     #[error(
         "the neighbour grid's cells are {cell_size} m wide, the surface's support_radius is {support_radius} \
-         m; cells must be at least as wide as the support: lower surface.support_radius"
+         m; cells must be at least as wide as the support: lower surface.support_ratio"
     )]
     GridTooFine {
         /// The cell size of the grid in m.

@@ -25,7 +25,7 @@ fn run(
         // rounding of a density causes a pressure proportional to 1 / dt^2.
         scene.solver.max_dt = 0.005;
         scene.solver.tolerance = 1e-6;
-        scene.solver.max_iterations = 400;
+        scene.solver.max_iterations = Some(400);
     }
     if density == DensityMode::Continuity {
         scene.solver.negative_pressure = NegativePressure::Keep;

@@ -12,11 +12,13 @@ use super::world::{SPACING, World, params, state};
 
 pub fn cases() -> Vec<Case> {
     let mut cases = vec![
-        begin("a frame", 0.02, 0),
-        begin("a frame of even steps", 0.0203, 1),
-        begin("shorter than a step", 1e-5, 0),
-        begin("a little longer than a step", 5.1e-4, 0),
-        begin("of length zero", 0.0, 0),
+        begin("a frame", 0.02, 5e-4, 0),
+        begin("a frame of even steps", 0.0203, 5e-4, 1),
+        begin("shorter than a step", 1e-5, 5e-4, 0),
+        begin("a little longer than a step", 1.05e-4, 1e-4, 0),
+        begin("of length zero", 0.0, 5e-4, 0),
+        begin("limited by new parameters", 0.02, 0.1, 0),
+        begin("of even steps, limited by new parameters", 0.9, 0.1, 1),
     ];
     cases.extend(end_step_cases());
     for (name, exponent, clamp_pressure) in [
@@ -72,17 +74,24 @@ fn compare_states() -> Compare {
     })
 }
 
-fn begin(name: &str, length: f32, is_implicit: u32) -> Case {
+/// The frame starts 12.5 s after the run. `stable_dt` may be longer than the parameters allow: they may change between two
+/// frames.
+fn begin(name: &str, length: f32, stable_dt: f32, is_implicit: u32) -> Case {
     let params = Params { particle_count: 1234, is_implicit, ..params(2.0) };
-    let old = StepState { done: 1, run_count: 0, steps: 77, ..state(1234) };
+    let old = StepState { done: 1, run_count: 0, steps: 77, stable_dt, ..state(1234) };
+    let limits = limits(&params, old.max_speed.into(), old.max_acceleration.into());
+    let stable = limits.into_iter().fold(f64::from(stable_dt), f64::min) as f32;
     let expected = StepState {
+        time: 12.5,
+        frame_start: 12.5,
+        stable_dt: stable,
         frame_duration: length,
         remaining: length,
         dt: match length {
-            _ if length <= 5e-4 => length,
-            _ if length < 1e-3 => 0.5 * length,
-            _ if is_implicit == 1 => length / (length / 5e-4).ceil(),
-            _ => 5e-4,
+            _ if length <= stable => length,
+            _ if is_implicit == 1 => length / (length / stable).ceil(),
+            _ if length < 2.0 * stable => 0.5 * length,
+            _ => stable,
         },
         done: 0,
         run_count: 1234,
@@ -94,12 +103,12 @@ fn begin(name: &str, length: f32, is_implicit: u32) -> Case {
         pass: pass("begin"),
         name: name.into(),
         size: DispatchSize::Groups(1),
-        input: vec![Data::Params(params), Data::F32(vec![length]), Data::State(old)],
+        input: vec![Data::Params(params), Data::F32(vec![length, 12.5]), Data::State(old)],
         compare: compare_states(),
         oracle: Box::new(move |out| same_state(&state_of(&out[0]), &expected)),
         control: |input| {
-            let Data::F32(duration) = &mut input[1] else { panic!("no duration") };
-            duration[0] = duration[0] * 1.00001 + 1e-9;
+            let Data::F32(times) = &mut input[1] else { panic!("no times") };
+            times[0] = times[0] * 1.00001 + 1e-9;
         },
     }
 }
@@ -184,39 +193,46 @@ fn end_step(name: &str, state: StepState, maxima: [f32; 4], params: Params) -> C
         control: |input| {
             let Data::State(state) = &mut input[1] else { panic!("no state") };
             state.dt *= 1.00001;
-            state.time *= 1.00001;
+            state.frame_start *= 1.00001;
         },
     }
 }
 
-/// Monaghan's and Morris's limits, in f64.
+/// The limits of Monaghan and Morris in s, in f64, without that by the pressure.
+fn limits(params: &Params, speed: f64, acceleration: f64) -> Vec<f64> {
+    let p = |value: f32| f64::from(value);
+    let (h, factor) = (0.5 * p(params.support_radius), p(params.cfl_factor));
+    let common = [p(params.max_dt), 0.125 * h * h / p(params.viscosity)];
+    let by_motion = if params.is_implicit == 1 {
+        vec![factor * p(params.particle_spacing) / speed]
+    } else {
+        vec![
+            factor * h / (p(params.sound_speed) + speed),
+            factor * (h / acceleration).sqrt(),
+            factor * 0.4 * p(params.particle_spacing) / speed,
+            0.17 * h / (p(params.density_diffusion) * p(params.sound_speed)),
+        ]
+    };
+    common.into_iter().chain(by_motion).collect()
+}
+
+/// The state after a step, in f64.
 pub fn next_state(
     params: &Params,
     state: &StepState,
     [speed, acceleration, excess, pressure]: [f64; 4],
 ) -> StepState {
     let p = |value: f32| f64::from(value);
-    let (h, factor) = (0.5 * p(params.support_radius), p(params.cfl_factor));
-    let explicit = [
-        1.1 * p(state.stable_dt),
-        factor * h / (p(params.sound_speed) + speed),
-        factor * (h / acceleration).sqrt(),
-        factor * 0.4 * p(params.particle_spacing) / speed,
-        0.17 * h / (p(params.density_diffusion) * p(params.sound_speed)),
-    ];
     // Of x'' = -w^2 x - g x' with implicit damping: dt^2 w^2 = 4 + 2 g dt, where 2 / w is the limit without damping.
     let undamped = 0.5 * p(params.particle_spacing) / pressure.sqrt();
     let rate = 3.0 * p(params.implicit_viscosity) / p(params.particle_spacing).powi(2);
     let half = 0.25 * rate * undamped * undamped;
-    let implicit = [
-        1.5 * p(state.stable_dt),
-        factor * p(params.particle_spacing) / speed,
-        half + (half * half + undamped * undamped).sqrt(),
-    ];
-    let common = [p(params.max_dt), 0.125 * h * h / p(params.viscosity)];
-    let limits = if params.is_implicit == 1 { &implicit[..] } else { &explicit[..] };
-    let limits = limits.iter().copied().chain(common);
-    let least = limits.fold(f64::INFINITY, f64::min);
+    let grown = if params.is_implicit == 1 {
+        (1.5 * p(state.stable_dt)).min(half + (half * half + undamped * undamped).sqrt())
+    } else {
+        1.1 * p(state.stable_dt)
+    };
+    let least = limits(params, speed, acceleration).into_iter().fold(grown, f64::min);
     let stable = least.max(p(params.min_dt));
     // In the same order as the pass: the remaining time is a difference, and another rounding would change it.
     let complete = state.dt >= state.remaining;
@@ -234,7 +250,7 @@ pub fn next_state(
     StepState {
         dt: dt as f32,
         stable_dt: stable as f32,
-        time: state.time + state.dt,
+        time: state.frame_start + (state.frame_duration - remaining),
         remaining,
         done: u32::from(complete),
         run_count: if complete { 0 } else { state.run_count },

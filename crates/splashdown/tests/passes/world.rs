@@ -92,7 +92,7 @@ pub fn state(particles: usize) -> StepState {
         viscous_iterations: 9,
         most_viscous_iterations: 4,
         viscous_residual: 0.003,
-        unused: 0,
+        frame_start: 0.69,
     }
 }
 

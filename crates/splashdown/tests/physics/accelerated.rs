@@ -15,7 +15,7 @@ use splashdown::{Simulation, sample};
 
 use super::cases::{Case, Variant};
 use super::figures::Series;
-use super::{cpu, scene, vec};
+use super::{executor, scene, vec};
 
 const GRAVITY: f64 = 9.81;
 /// Length and depth of the water in m.
@@ -54,7 +54,7 @@ fn tank(across: u32, solver: &str, speed: f64, up: f64, left: f64) -> Simulation
     let mut particles = sample::particles(&scene).unwrap();
     sample::start_at_rest(&scene, &mut particles, &[]);
     particles.velocities.fill([speed as f32, 0.0, 0.0]);
-    let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
+    let mut simulation = Simulation::with_particles(&scene, executor(), &particles).unwrap();
     scene.gravity.x = left as f32;
     scene.gravity.y = -(GRAVITY + up) as f32;
     assert!(simulation.update_parameters(&scene).unwrap());

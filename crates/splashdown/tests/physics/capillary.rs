@@ -11,7 +11,7 @@ use splashdown::{Simulation, sample};
 
 use super::cases::{CONTROL, Case, Variant};
 use super::figures::{Figures, Series};
-use super::{cpu, scene};
+use super::{executor, scene};
 
 /// Tension in N/m and density in kg/m^3 of water, and the spacing in m.
 const TENSION: f64 = 0.0727;
@@ -67,7 +67,7 @@ impl Wave {
                 0.0,
             ];
         }
-        let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
+        let mut simulation = Simulation::with_particles(&scene, executor(), &particles).unwrap();
         let (period, samples) = (TAU / omega, 60.0);
         let mut curve = vec![(0.0, 0.0)];
         for _ in 0..(DURATION * samples) as u32 {

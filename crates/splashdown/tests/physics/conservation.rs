@@ -8,7 +8,7 @@ use splashdown_io::Particles;
 
 use super::cases::{CONTROL, Case, Variant};
 use super::figures::Figures;
-use super::{angular_sum, cpu, rms_speed, scene, square_sum, velocity_sum};
+use super::{angular_sum, executor, rms_speed, scene, square_sum, velocity_sum};
 
 const STEPS: u64 = 1000;
 
@@ -136,10 +136,10 @@ fn an_isolated_blob_conserves_momentum_and_particles() {
     let mut figures = Figures::new(&MOMENTUM, "control", 10);
     let scene = blob(-1e-5, fluid, SUMMATION);
     let start = stirred(&scene, 0.2);
-    let end = run(&scene, cpu(), &start);
+    let end = run(&scene, executor(), &start);
     figures.measure("gravity of 1e-5 m/s^2", momentum_drift(&start, &end));
     let scene = blob(0.0, fluid, MUELLER_TENSION);
-    let end = run(&scene, cpu(), &start);
+    let end = run(&scene, executor(), &start);
     figures.measure("surface tension of the colour field", momentum_drift(&start, &end));
     figures.close();
 }
@@ -167,7 +167,7 @@ fn a_spinning_blob_conserves_angular_momentum() {
     }
     // Control and report: Mueller's viscosity acts along the difference of velocities, not along the line of the pair.
     let mut figures = Figures::new(&ANGULAR_MOMENTUM, "control", 10);
-    figures.measure("mueller2003", drift(MUELLER, "viscosity = 0.01", cpu()));
+    figures.measure("mueller2003", drift(MUELLER, "viscosity = 0.01", executor()));
     figures.close();
 }
 
@@ -180,7 +180,7 @@ fn viscosity_only_dissipates_energy() {
         scene.solver.max_dt = 0.002;
         scene.fluid.material.viscosity = viscosity;
         let start = stirred(&scene, 0.2);
-        let mut simulation = Simulation::with_particles(&scene, cpu(), &start).unwrap();
+        let mut simulation = Simulation::with_particles(&scene, executor(), &start).unwrap();
         let (first, mut last, mut worst) = (square_sum(&start), square_sum(&start), f64::NEG_INFINITY);
         for _ in 0..100 {
             simulation.advance(0.001).unwrap();

@@ -8,7 +8,7 @@ use splashdown::Simulation;
 use splashdown_io::Particles;
 
 use super::cases::{CONTROL, Case, Variant};
-use super::cpu;
+use super::executor;
 use super::figures::{Figures, Series};
 use super::scene;
 
@@ -89,7 +89,7 @@ impl Column {
             2.0 * A,
             self.solver
         ));
-        let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+        let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
         assert_eq!(simulation.stats().particles, 16 * self.across * self.across);
         // Time is scaled by the earth's gravity, even if the simulated gravity differs.
         let unit = (A / GRAVITY).sqrt();

@@ -25,7 +25,7 @@ use splashdown_io::Mesh;
 use super::cases::{CONTROL, Case, Variant, is_validation};
 use super::figures::{Figures, Series};
 use super::shapes::file;
-use super::{cpu, scene};
+use super::{executor, scene};
 
 /// Lengths in diameters of 1 m; the speed is 1 m/s.
 const LENGTH: f64 = 13.5;
@@ -132,7 +132,7 @@ impl Towed {
             scene.bodies[0].mesh.shape = file(folder.path(), "cylinder.obj", &cylinder(thick));
             scene.bodies[0].mesh.scale = Vec3::ONE;
         }
-        let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+        let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
         let mut drag = Series::new();
         while simulation.stats().time < MEAN[1] {
             let stats = simulation.advance(0.1).unwrap();

@@ -9,7 +9,7 @@ use splashdown_io::Particles;
 
 use super::cases::{CONTROL, Case, Variant};
 use super::figures::{Figures, Series};
-use super::{cpu, scene, square_sum, vec};
+use super::{executor, scene, square_sum, vec};
 
 /// Tension in N/m and density in kg/m^3 of water, and the spacing in m.
 const TENSION: f64 = 0.0727;
@@ -59,7 +59,7 @@ impl Drop {
         let particles = sample::particles(&scene).unwrap();
         let radius = (particles.positions.len() as f64 * SPACING.powi(3) * 0.75 / PI).cbrt();
         let period = TAU / (8.0 * TENSION / (DENSITY * radius.powi(3))).sqrt();
-        let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
+        let mut simulation = Simulation::with_particles(&scene, executor(), &particles).unwrap();
         for _ in 0..20 {
             simulation.advance((0.1 * period) as f32).unwrap();
         }
@@ -84,7 +84,7 @@ impl Drop {
             *v = (rate * vec(x) * DVec3::new(1.0, -0.5, -0.5)).as_vec3().to_array();
         }
         let scene = self.simulation.scene().clone();
-        let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
+        let mut simulation = Simulation::with_particles(&scene, executor(), &particles).unwrap();
         let mut curve = vec![(0.0, elongation(&particles))];
         for _ in 0..(60.0 * periods) as u32 {
             let stats = simulation.advance((self.period / 60.0) as f32).unwrap();

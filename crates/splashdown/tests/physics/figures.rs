@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use super::cases::Case;
+use super::cases::{Case, executor_name};
 use super::gates::{self, Gate};
 
 /// Points of one curve.
@@ -58,14 +58,14 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// The wall time of the figures starts here.
+    /// The figures of the device of all cases. Their wall time starts here.
     pub fn new(case: &'static Case, variant: &str, across: u32) -> Self {
         assert!(case.variants.iter().any(|known| known.name == variant), "{}: {variant}", case.name);
         Self {
             case,
             variant: variant.to_owned(),
             across,
-            executor: "CPU".to_owned(),
+            executor: executor_name().to_owned(),
             start: Instant::now(),
             rows: Vec::new(),
             omitted: Vec::new(),
@@ -73,7 +73,7 @@ impl Figures {
         }
     }
 
-    /// The figures of another device than the CPU.
+    /// The figures of another device.
     pub fn on(mut self, executor: &str) -> Self {
         executor.clone_into(&mut self.executor);
         self

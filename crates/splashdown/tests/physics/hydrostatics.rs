@@ -11,7 +11,7 @@ use splashdown_gpu::{Executor, testing};
 
 use super::cases::{CONTROL, Case, Variant};
 use super::figures::Figures;
-use super::{cpu, rms_speed, scene};
+use super::{executor, rms_speed, scene};
 
 const GRAVITY: f64 = 9.81;
 
@@ -182,7 +182,7 @@ fn a_tank_at_rest_has_the_hydrostatic_pressure() {
         let width = (3 * across).div_ceil(4);
         let size = [width, across, width];
         let tank = Tank { size, spacing: HEIGHT / f64::from(across), solver: variant.keys, gravity: GRAVITY };
-        tank.settle(cpu(), 2.0).write(figures);
+        tank.settle(executor(), 2.0).write(figures);
     });
 }
 
@@ -190,7 +190,7 @@ fn a_tank_at_rest_has_the_hydrostatic_pressure() {
 fn weaker_gravity_is_detected() {
     let mut figures = Figures::new(&TANK, "control", 8);
     let tank = Tank { size: [7, 8, 7], spacing: 0.025, solver: CONTINUITY, gravity: 0.9 * GRAVITY };
-    let light = tank.settle(cpu(), 1.0);
+    let light = tank.settle(executor(), 1.0);
     figures.measure("pressure, L2 relative, with 0.9 g", light.pressure);
     figures.measure("relative error of the wall force, with 0.9 g", (light.load - 1.0).abs());
     figures.close();

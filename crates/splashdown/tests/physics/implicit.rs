@@ -1,11 +1,10 @@
 //! `dfsph`: a block that collapses in a closed box, deep water, a drop that falls on a wide pool, and a tank at rest.
 
 use splashdown::{Simulation, SimulationError, Stats, sample};
-use splashdown_gpu::{CpuExecutor, Executor};
 
 use super::cases::{Case, Variant};
 use super::figures::Figures;
-use super::scene;
+use super::{executor, scene};
 
 static COLLAPSE: Case = Case {
     name: "implicit pressure, collapse",
@@ -36,10 +35,6 @@ static TANK: Case = Case {
 };
 pub const CASES: &[&Case] = &[&COLLAPSE, &DEEP, &IMPACT, &TANK];
 
-fn cpu() -> Executor {
-    CpuExecutor::new().into()
-}
-
 /// The block of the study of the solver, at a quarter of its lengths.
 fn collapse(keys: &str) -> Simulation {
     let scene = scene(&format!(
@@ -60,7 +55,7 @@ fn collapse(keys: &str) -> Simulation {
         {keys}
         "#
     ));
-    Simulation::with_executor(&scene, cpu()).unwrap()
+    Simulation::with_executor(&scene, executor()).unwrap()
 }
 
 /// Kinetic and potential energy over the mass, in m^2/s^2.
@@ -132,7 +127,7 @@ fn deep_water_gains_no_energy() {
         method = "dfsph"
         "#,
     );
-    let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+    let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
     let start = energy(&mut simulation);
     let mut rise = 0.0_f64;
     let mut stats = simulation.stats();
@@ -170,7 +165,7 @@ fn excess_of_an_impact(keys: &str) -> f64 {
         {keys}
         "#
     ));
-    let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+    let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
     let rest = simulation.params().rest_density;
     let mut largest = 0.0_f32;
     for _ in 0..12 {
@@ -212,7 +207,7 @@ fn a_tank_rests_at_hydrostatic_pressure() {
         method = "dfsph"
         "#,
     );
-    let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+    let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
     simulation.advance(2.0).unwrap();
     let particles = simulation.particles().unwrap();
     let n = particles.positions.len() as f64;
@@ -250,7 +245,7 @@ fn sealed_vortex(gravity: f32) -> Result<Stats, SimulationError> {
     for ([x, y, _], v) in particles.positions.iter().zip(&mut particles.velocities) {
         *v = [(pi * x).sin() * (pi * y).cos(), -(pi * x).cos() * (pi * y).sin(), 0.0];
     }
-    Simulation::with_particles(&scene, cpu(), &particles)?.advance(1.0)
+    Simulation::with_particles(&scene, executor(), &particles)?.advance(1.0)
 }
 
 /// A lattice that is sheared has a larger sum of the kernel, and no room to expand.

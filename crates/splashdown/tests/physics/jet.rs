@@ -12,7 +12,7 @@ use splashdown::Simulation;
 
 use super::cases::{Case, Variant};
 use super::figures::Series;
-use super::{cpu, scene, velocity_sum};
+use super::{executor, scene, velocity_sum};
 
 /// Edge of the jet in m, and its speed in m/s.
 const EDGE: f64 = 0.1;
@@ -48,7 +48,7 @@ fn a_jet_pushes_a_plate_by_its_momentum() {
             variant.keys,
             0.5 * spacing,
         ));
-        let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+        let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
         let mass = f64::from(simulation.params().particle_mass);
         let (mut forces, mut pressures) = (Series::new(), Series::new());
         let (mut impulse, mut last) = (0.0, 0.0);

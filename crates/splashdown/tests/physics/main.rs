@@ -38,9 +38,9 @@ mod vortex;
 mod waves;
 mod wedge;
 
+use cases::executor;
 use glam::DVec3;
 use splashdown::scene::Scene;
-use splashdown_gpu::{CpuExecutor, Executor};
 use splashdown_io::Particles;
 
 /// All cases, module by module.
@@ -72,10 +72,6 @@ const CASES: &[&[&cases::Case]] = &[
     waves::CASES,
     wedge::CASES,
 ];
-
-fn cpu() -> Executor {
-    CpuExecutor::new().into()
-}
 
 /// Parses the text of a scene file.
 fn scene(text: &str) -> Scene {

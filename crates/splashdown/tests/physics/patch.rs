@@ -10,7 +10,7 @@ use splashdown::{Simulation, sample};
 
 use super::cases::{CONTROL, Case, Variant};
 use super::figures::Figures;
-use super::{angular_sum, cpu, scene, square_sum, vec};
+use super::{angular_sum, executor, scene, square_sum, vec};
 
 /// The edge in m, and the initial angular velocity in 1/s.
 const EDGE: f64 = 1.0;
@@ -56,7 +56,7 @@ fn rotate(across: u32, solver: &str) -> End {
     let mut start = sample::particles(&scene).unwrap();
     start.velocities =
         start.positions.iter().map(|x| [OMEGA as f32 * x[1], -OMEGA as f32 * x[0], 0.0]).collect();
-    let mut simulation = Simulation::with_particles(&scene, cpu(), &start).unwrap();
+    let mut simulation = Simulation::with_particles(&scene, executor(), &start).unwrap();
     let stats = simulation.advance((1.0 / OMEGA) as f32).unwrap();
     assert_eq!((stats.escaped, stats.non_finite), (0, 0), "{stats:?}");
     let end = simulation.particles().unwrap();

@@ -8,7 +8,7 @@ use splashdown::Simulation;
 
 use super::cases::{Case, Variant};
 use super::figures::Series;
-use super::{cpu, scene, vec};
+use super::{executor, scene, vec};
 
 const GRAVITY: f64 = 9.81;
 /// Depth of the reservoir in m; its length is six depths.
@@ -40,7 +40,7 @@ fn the_depth_at_a_broken_dam_is_that_of_ritter() {
             1.5 * DEPTH,
             variant.keys
         ));
-        let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+        let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
         let (unit, wave) = ((DEPTH / GRAVITY).sqrt(), (GRAVITY * DEPTH).sqrt());
         let (mut depths, mut speeds) = (Series::new(), Series::new());
         // The volume over the bed, two spacings to both sides of the dam.

@@ -13,7 +13,7 @@ use splashdown_io::Particles;
 
 use super::cases::{CONTROL, Case, Variant};
 use super::figures::{Figures, Series};
-use super::{cpu, rms_speed, scene, vec};
+use super::{executor, rms_speed, scene, vec};
 
 /// Tension in N/m and density in kg/m^3 of water, and the spacing in m.
 const TENSION: f64 = 0.0727;
@@ -68,7 +68,7 @@ fn relax(across: u32, keys: &str, angle: f64) -> Measured {
     let particles = Particles::from_positions(half_ball(across));
     let volume = particles.positions.len() as f64 * SPACING.powi(3);
     let time = (DENSITY * radius.powi(3) / TENSION).sqrt();
-    let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
+    let mut simulation = Simulation::with_particles(&scene, executor(), &particles).unwrap();
     let (mut by_centre, mut by_base, mut curve) = (Vec::new(), Vec::new(), Series::new());
     let first = centre(&particles);
     let mut last = particles;

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
+use splashdown::Simulation;
 use splashdown::scene::{Body, BoundaryKind, MeshShape, MeshSource, Motion, Scene, SolidContact, UpAxis};
-use splashdown::{Device, Simulation};
 use splashdown_io::Mesh;
+
+use super::executor;
 
 /// A body with the mesh of a file or a model, at a position.
 pub fn body(name: &str, shape: MeshShape, scale: f32, position: Vec3, motion: Motion) -> Body {
@@ -39,11 +41,11 @@ pub fn file(folder: &Path, name: &str, mesh: &Mesh) -> MeshShape {
 
 /// The fluid of a scene with the densities of water at rest, where the level is `height(x)` in m above each particle.
 pub fn at_rest(scene: &Scene, height: impl Fn(Vec3) -> f32) -> Simulation {
-    let mut simulation = Simulation::new(scene, &Device::Cpu).unwrap();
+    let mut simulation = Simulation::with_executor(scene, executor()).unwrap();
     let mut particles = simulation.particles().unwrap();
     let params = *simulation.params();
     let per_depth = scene.gravity.length() / params.sound_speed.powi(2);
     let density = |x: &[f32; 3]| params.rest_density * (1.0 + per_depth * height(Vec3::from(*x)).max(0.0));
     particles.densities = particles.positions.iter().map(density).collect();
-    Simulation::with_particles(scene, splashdown_gpu::CpuExecutor::new().into(), &particles).unwrap()
+    Simulation::with_particles(scene, executor(), &particles).unwrap()
 }

@@ -25,7 +25,7 @@ use splashdown::{Simulation, sample};
 
 use super::cases::{CONTROL, Case, Variant, is_validation};
 use super::figures::{Figures, Series};
-use super::{cpu, scene};
+use super::{executor, scene};
 
 const GRAVITY: f64 = 9.81;
 /// Distance of the gauges from the wall in m.
@@ -135,7 +135,7 @@ impl Tank {
         if from_middle {
             particles.velocities.fill([-(self.amplitude * self.frequency()) as f32, 0.0, 0.0]);
         }
-        let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
+        let mut simulation = Simulation::with_particles(&scene, executor(), &particles).unwrap();
         let mut start = 0.0;
         if !from_middle {
             start = simulation.advance((0.25 * self.period) as f32).unwrap().time;

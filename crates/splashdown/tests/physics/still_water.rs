@@ -10,7 +10,7 @@ use splashdown::scene::{MeshShape, Motion};
 
 use super::cases::{Case, Variant};
 use super::shapes::body;
-use super::{rms_speed, scene};
+use super::{executor, rms_speed, scene};
 
 const GRAVITY: f64 = 9.81;
 /// The water depth and the edge of the cube in m.
@@ -58,7 +58,7 @@ fn simulate(solver: &str, across: u32, seconds: f32) -> (f64, f64, Vec<(&'static
     ));
     let centre = Vec3::new(0.2, CENTRE as f32, 0.2);
     scene.bodies.push(body("cube", MeshShape::Model("cube".into()), EDGE as f32, centre, Motion::Static));
-    let mut simulation = splashdown::Simulation::new(&scene, &splashdown::Device::Cpu).unwrap();
+    let mut simulation = splashdown::Simulation::with_executor(&scene, executor()).unwrap();
     let (mut lift, frames) = (0.0, 20);
     let mut rows: Vec<Vec<f64>> = vec![Vec::new(); gauges.len()];
     for frame in 0..frames {

@@ -9,7 +9,7 @@ use glam::DVec2;
 use splashdown::{Simulation, sample};
 
 use super::cases::{CONTROL, Case, Variant, is_validation};
-use super::cpu;
+use super::executor;
 use super::figures::Figures;
 use super::scene;
 
@@ -89,7 +89,7 @@ fn deviations(solver: &str, across: u32, last: f64) -> Vec<(f64, DVec2)> {
         DVec2::new(sum.x.sqrt(), sum.y.sqrt())
     };
     let first = moments(&particles.positions);
-    let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
+    let mut simulation = Simulation::with_particles(&scene, executor(), &particles).unwrap();
     let mut found = Vec::new();
     for time in TIMES.into_iter().filter(|&time| time <= last) {
         let time = time / RATE;

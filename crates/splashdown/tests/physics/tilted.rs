@@ -9,14 +9,13 @@
 use glam::{Quat, Vec3};
 use splashdown::Simulation;
 use splashdown::scene::{Motion, Scene};
-use splashdown_gpu::CpuExecutor;
 use splashdown_io::Particles;
 
 use super::cases::{Case, Variant};
 use super::figures::Figures;
 use super::meshes::tub;
 use super::shapes::{body, file};
-use super::{rms_speed, scene};
+use super::{executor, rms_speed, scene};
 
 const GRAVITY: f32 = 9.81;
 /// The tilt in radians.
@@ -91,7 +90,7 @@ impl Tank {
 
     fn check(&self, scene: &Scene, figures: &mut Figures) {
         let water = self.water(scene);
-        let mut simulation = Simulation::with_particles(scene, CpuExecutor::new().into(), &water).unwrap();
+        let mut simulation = Simulation::with_particles(scene, executor(), &water).unwrap();
         let stats = simulation.advance(2.0).unwrap();
         assert_eq!((stats.escaped, stats.non_finite), (0, 0), "{stats:?}");
         let particles = simulation.particles().unwrap();

@@ -7,14 +7,14 @@
 //! large, so it is reported without a gate.
 
 use glam::Vec3;
+use splashdown::Simulation;
 use splashdown::scene::Motion;
-use splashdown::{Device, Simulation};
 
 use super::cases::{Case, Variant};
 use super::figures::{Figures, Series};
 use super::meshes::cuboid;
-use super::scene;
 use super::shapes::{body, file};
+use super::{executor, scene};
 
 const GRAVITY: f64 = 9.81;
 const SLIT: f32 = 0.08;
@@ -88,7 +88,7 @@ fn drain(tank: &Tank, solver: &str, figures: &mut Figures) {
         let shape = file(folder.path(), &format!("{name}.obj"), &mesh);
         scene.bodies.push(body(name, shape, 1.0, Vec3::ZERO, Motion::Static));
     }
-    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
     let mut levels = Series::new();
     let mut jet = Series::new();
     for _ in 0..(tank.seconds * 50.0) as u32 {

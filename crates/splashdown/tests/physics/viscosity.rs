@@ -11,7 +11,7 @@ use super::cases::{Case, Variant};
 use super::figures::Figures;
 use super::meshes::cuboid;
 use super::shapes::{body, file};
-use super::{cpu, scene, vec, velocity_sum};
+use super::{executor, scene, vec, velocity_sum};
 
 /// Width of the channels in m.
 const WIDTH: f64 = 0.1;
@@ -81,7 +81,7 @@ fn plug(across: u32, friction: f64) -> Simulation {
         0.25 * w,
         2.5 * w,
     ));
-    Simulation::with_executor(&scene, cpu()).unwrap()
+    Simulation::with_executor(&scene, executor()).unwrap()
 }
 
 /// The positions and velocities along the duct in its middle.
@@ -184,7 +184,7 @@ fn plates(folder: &TempDir, across: u32, friction: f32) -> Simulation {
         plate.friction = friction;
         scene.bodies.push(plate);
     }
-    Simulation::with_executor(&scene, cpu()).unwrap()
+    Simulation::with_executor(&scene, executor()).unwrap()
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn carried(friction: f32) -> (f64, f64, f64) {
     let mut cube = body("cube", splashdown::scene::MeshShape::Model("cube".into()), 0.12, Vec3::ZERO, motion);
     cube.friction = friction;
     scene.bodies.push(cube);
-    let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+    let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
     let particle = f64::from(simulation.params().particle_mass);
     let before = particle * velocity_sum(&simulation.particles().unwrap()).x;
     simulation.advance(0.1).unwrap();
@@ -272,7 +272,7 @@ fn honey_spreads_alike_with_every_tolerance() {
     let radius = |tolerance: f32| {
         let keys = format!("method = \"dfsph\"\ntolerance = {tolerance}");
         let scene = scene(&text.replacen("method = \"dfsph\"", &keys, 1));
-        let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+        let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
         simulation.advance(0.2).unwrap();
         let positions = simulation.particles().unwrap().positions;
         let square = |[x, _, z]: &[f32; 3]| f64::from((x - 0.07).powi(2) + (z - 0.07).powi(2));

@@ -11,7 +11,7 @@ use splashdown::{Simulation, sample};
 
 use super::cases::{Case, Variant};
 use super::figures::Series;
-use super::{cpu, disorder, scene, square_sum, vec, velocity_sum};
+use super::{disorder, executor, scene, square_sum, vec, velocity_sum};
 
 /// The largest speed in m/s, the edge of the cell in m, and the viscosity in m^2/s: Re = U 2 L / nu.
 const SPEED: f64 = 1.0;
@@ -62,7 +62,7 @@ fn vortex(across: u32, solver: &str) -> Simulation {
         [(SPEED * x.sin() * y.cos()) as f32, (-SPEED * x.cos() * y.sin()) as f32, 0.0]
     };
     particles.velocities = particles.positions.iter().map(|&x| velocity(vec(x))).collect();
-    Simulation::with_particles(&scene, cpu(), &particles).unwrap()
+    Simulation::with_particles(&scene, executor(), &particles).unwrap()
 }
 
 #[test]

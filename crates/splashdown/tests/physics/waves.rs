@@ -8,7 +8,7 @@
 use splashdown::{Simulation, sample};
 
 use super::cases::{CONTROL, Case, Variant, is_validation};
-use super::cpu;
+use super::executor;
 use super::figures::{Figures, Series};
 use super::scene;
 
@@ -81,7 +81,7 @@ impl Wave {
                 0.0,
             ];
         }
-        let mut simulation = Simulation::with_particles(&scene, cpu(), &particles).unwrap();
+        let mut simulation = Simulation::with_particles(&scene, executor(), &particles).unwrap();
         let (period, samples) = (std::f64::consts::TAU / omega, 80.0);
         let mut curve = vec![(0.0, 0.0)];
         for _ in 0..(self.periods * samples) as u32 {

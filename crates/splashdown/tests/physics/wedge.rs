@@ -18,7 +18,7 @@ use splashdown_io::Mesh;
 use super::cases::{Case, Variant};
 use super::figures::Series;
 use super::shapes::file;
-use super::{cpu, scene};
+use super::{executor, scene};
 
 /// The speed in m/s, and the final depth of the apex in m.
 const SPEED: f64 = 1.0;
@@ -77,7 +77,7 @@ fn the_force_on_a_wedge_grows_with_time() {
         ));
         scene.bodies[0].mesh.shape = file(folder.path(), "wedge.obj", &prism(thick as f32));
         scene.bodies[0].mesh.scale = Vec3::ONE;
-        let mut simulation = Simulation::with_executor(&scene, cpu()).unwrap();
+        let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
         let mut forces = Series::new();
         for _ in 0..40 {
             let stats = simulation.advance((DEPTH / SPEED / 40.0) as f32).unwrap();

@@ -131,6 +131,10 @@ fn errors_in_bodies_name_the_allowed_values() {
             "name = \"a\"\nmesh = \"cube\"\n[[body]]\nname = \"a\"\nmesh = \"cube\"",
             &["two bodies called \"a\""],
         ),
+        (
+            "name = \"a\"\nmesh = \"cube\"\n[[body]]\nname = \"A\"\nmesh = \"cube\"",
+            &["two bodies called \"A\""],
+        ),
         ("name = \"a\"\nmesh = \"cube\"\nmotion = \"scripted\"", &["needs a keyframe, move or turn"]),
         (
             "name = \"a\"\nmesh = \"cube\"\nmotion = \"static\"\nturn = [\"0\", \"t\", \"0\"]",

@@ -150,8 +150,7 @@ fn the_parser_accepts_every_key_of_the_schema_and_uses_its_defaults() {
         for (name, key) in keys {
             let Some(default) = key.get("default") else { continue };
             // Keys without effect for the plain method; their defaults are compared below.
-            if ["density_diffusion", "contact_angle", "tolerance", "max_iterations"].contains(&name.as_str())
-            {
+            if ["density_diffusion", "contact_angle"].contains(&name.as_str()) {
                 continue;
             }
             let header = format!("[{section}]");
@@ -176,11 +175,9 @@ fn the_parser_accepts_every_key_of_the_schema_and_uses_its_defaults() {
     assert!(seen > 20, "only {seen} defaults were compared");
     assert_eq!(plain.solver, Solver::with(Method::Wcsph, DensityMode::Summation));
     assert_eq!(plain.surface, SurfaceSettings::for_spacing(0.05));
-    for (name, standard) in [
-        ("density_diffusion", plain.solver.density_diffusion),
-        ("contact_angle", plain.solver.contact_angle),
-        ("tolerance", plain.solver.tolerance),
-    ] {
+    for (name, standard) in
+        [("density_diffusion", plain.solver.density_diffusion), ("contact_angle", plain.solver.contact_angle)]
+    {
         let default = &schema["properties"]["solver"]["properties"][name]["default"];
         assert_eq!(default.as_f64().map(|x| x as f32), Some(standard), "{name}");
     }

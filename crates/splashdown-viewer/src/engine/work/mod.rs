@@ -121,6 +121,9 @@ impl Worker {
                 }
             }
             Command::Play(playing) => {
+                if playing {
+                    self.reopen().await?;
+                }
                 self.playing = playing && self.simulation.is_some();
                 self.pace.pause();
                 self.meter.pause();
@@ -128,6 +131,7 @@ impl Worker {
             }
             Command::Advance(seconds) => {
                 self.playing = false;
+                self.reopen().await?;
                 return self.advance(seconds).await;
             }
             Command::TimeScale(scale) => self.pace.set_scale(scale),
@@ -156,7 +160,10 @@ impl Worker {
                     }
                 }
             }
-            Command::Export => return self.export().await,
+            Command::Export => {
+                self.reopen().await?;
+                return self.export().await;
+            }
             Command::Checkpoint(text, purpose) => return self.checkpoint(&text, purpose).await,
             Command::Resume(checkpoint) => return self.resume(&checkpoint).await,
             Command::Quit => {}
@@ -176,6 +183,17 @@ impl Worker {
         let simulation = Simulation::prepare_async(&scene, executor, &progress).await?;
         self.saved_foam = None;
         self.begin(simulation).await
+    }
+
+    /// Opens the scene that is shown again, if its simulation was freed for one that could not be opened.
+    async fn reopen(&mut self) -> Result<(), SimulationError> {
+        match (&self.simulation, &self.opened) {
+            (None, Some(opened)) => {
+                let scene = opened.scene.clone();
+                self.open(scene).await
+            }
+            _ => Ok(()),
+        }
     }
 
     async fn resume(&mut self, checkpoint: &Checkpoint) -> Result<(), SimulationError> {

@@ -21,7 +21,7 @@ pub(super) static SOLVER: Table = Table {
         key(
             "support_ratio",
             a_number(1.5, 4.0, ""),
-            "Support radius of the kernel divided by the particle spacing. Default: 2; 3 with accuracy = \"engineering\".",
+            "Support radius of the kernel divided by the particle spacing. Default: 2; 3 with accuracy = \"engineering\" or surface_tension = \"csf\".",
         )
         .also(&["support_radius", "smoothing_length", "h"]),
         key(
@@ -87,16 +87,14 @@ pub(super) static SOLVER: Table = Table {
         key(
             "tolerance",
             a_number(1e-5, 0.01, ""),
-            "Mean error of the density, as a part of the rest density, at which the pressure iterations of dfsph stop; the mean over 64 neighbouring particles may be five times as large. The iterations of an implicit viscosity stop at a residual of ten times this part of the change of the velocity by all other forces.",
+            "Mean error of the density, as a part of the rest density, at which the pressure iterations of dfsph stop; the mean over 64 neighbouring particles may be five times as large. The iterations of an implicit viscosity stop at a residual of ten times this part of the change of the velocity by all other forces. Default: 0.001; 0.0001 with surface_tension = \"csf\".",
         )
-        .default("0.001")
         .also(&["max_error", "maxError"]),
         key(
             "max_iterations",
             Kind::Integer(range(2.0, 1000.0, "")),
-            "Largest number of pressure iterations per step; dfsph. An implicit viscosity takes at most five times as many.",
+            "Largest number of pressure iterations per step; dfsph. Default: a quarter of the spacings along the longest side of the domain, at least 40 and at most 400. An implicit viscosity takes at most five times as many.",
         )
-        .default("40")
         .also(&["maxIterations", "iterations"]),
         key("sort", Kind::Word(words::<Sort>), "Algorithm that sorts particles into cells.")
             .default("\"counting\""),

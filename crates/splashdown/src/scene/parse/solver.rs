@@ -55,7 +55,7 @@ pub(super) fn read_solver(section: &Section<'_>) -> Part<Solver> {
         min_dt: min_dt?.unwrap_or(standard.min_dt),
         sort: sort?.unwrap_or(standard.sort),
         tolerance: tolerance?.unwrap_or(Solver::usual_tolerance(method, surface_tension)),
-        max_iterations: max_iterations?.unwrap_or(standard.max_iterations),
+        max_iterations: max_iterations?,
         ..standard
     };
     let accurate = check_accuracy(section, accuracy, method, density);

@@ -36,7 +36,8 @@ pub(super) fn read_unique<T>(
     let mut names = HashSet::new();
     let mut one = |section: &Section<'_>| {
         let thing = read(section)?;
-        if names.insert(name(&thing).to_owned()) {
+        // Bodies are files of these names, and some file systems ignore case.
+        if names.insert(name(&thing).to_ascii_lowercase()) {
             return Ok(thing);
         }
         let message = format!("there are two {kinds} called {:?}", name(&thing));

@@ -4,9 +4,14 @@
 
 @compute @workgroup_size(1)
 fn begin() {
-    let length = duration[0];
+    let length = frame_times[0];
     state.frame_duration = length;
+    state.frame_start = frame_times[1];
+    state.time = state.frame_start;
     state.remaining = length;
+    // The parameters may have changed since the last step.
+    let longest = longest_step(state.max_speed, state.max_acceleration);
+    state.stable_dt = max(min(state.stable_dt, longest), params.min_dt);
     state.dt = step_length(state.stable_dt, length, true);
     state.done = 0u;
     state.run_count = params.particle_count;

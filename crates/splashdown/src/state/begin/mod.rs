@@ -1,4 +1,4 @@
-//! Begins a frame: sets its duration and the number of particles to process.
+//! Begins a frame: sets its start, its duration and the number of particles to process.
 //!
 //! A frame of zero seconds sets only this number, for a sort without a step.
 
@@ -12,7 +12,7 @@ bindings! {
     /// The buffers of `begin.wgsl`.
     pub(super) struct BeginBindings {
         params: uniform Params,
-        duration: read [f32],
+        frame_times: read [f32],
         state: write StepState,
     }
 }

@@ -15,29 +15,19 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
     let [speed, acceleration, excess] =
         [StepCounters::MAX_SPEED, StepCounters::MAX_ACCELERATION, StepCounters::MAX_EXCESS].map(&mut take);
 
-    let h = 0.5 * params.support_radius;
-    let c = params.cfl_factor;
     let is_slow = std::mem::take(&mut counters[StepCounters::SHORTEN]) != 0;
     let pressure = f32::from_bits(std::mem::take(&mut counters[StepCounters::MAX_PRESSURE]));
-    let mut stable = if params.is_implicit == 1 {
+    let grown = if params.is_implicit == 1 {
         let most = if is_slow { 0.7 * state.stable_dt.min(state.dt) } else { 1.5 * state.stable_dt };
-        most.min(params.max_dt)
-            .min(c * params.particle_spacing / speed.max(1e-20))
-            .min(pressure_limit(params, pressure))
+        most.min(pressure_limit(params, pressure))
     } else {
-        (1.1 * state.stable_dt)
-            .min(params.max_dt)
-            .min(c * h / (params.sound_speed + speed))
-            .min(c * (h / acceleration.max(1e-20)).sqrt())
-            .min(c * 0.4 * params.particle_spacing / speed.max(1e-20))
-            .min(0.17 * h / (params.density_diffusion * params.sound_speed).max(1e-20))
+        1.1 * state.stable_dt
     };
-    stable = stable.min(0.125 * h * h / params.viscosity.max(1e-20));
+    let mut stable = grown.min(params.longest_step(speed, acceleration));
     if stable < params.min_dt {
         stable = params.min_dt;
         state.too_small = 1;
     }
-    state.time += state.dt;
     state.steps += 1;
     state.stable_dt = stable;
     state.max_speed = speed;
@@ -51,6 +41,7 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
         state.remaining -= state.dt;
         state.dt = params.step_length(stable, state.remaining, false);
     }
+    state.time = state.frame_start + (state.frame_duration - state.remaining);
 }
 
 /// The longest step in s with a pressure over the rest density. A particle that is displaced across its neighbours oscillates
