@@ -12,7 +12,7 @@ const HEAD: &str = "# Validation, all figures
 
 This page contains the figures of all physics cases, with their gates. The command `cargo xtask
 validate [TEST]... [--quick]` measures them and writes the page; the [report](validation.md)
-describes the cases. The columns are solvers or other variants of a case; a row is one figure at one
+describes the cases. Columns with the name of a GPU were measured on it (`--device=gpu`). The columns are solvers or other variants of a case; a row is one figure at one
 resolution, the number of particle spacings along the length given. Gates are in
 `crates/splashdown/tests/physics/gates.toml` and are set before the first run. A figure without a
 gate is reported only. *control* is a run with a deliberate error, which must exceed its gate.
