@@ -37,6 +37,8 @@ pub fn command(program: impl AsRef<OsStr>) -> Command {
         // A build that runs once does not need the incremental state, which takes as much disk space as everything
         // else, nor line numbers in backtraces, which make test programs twice as large.
         command.env("CARGO_INCREMENTAL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0");
+        // Downloaded packages would be stored a second time.
+        command.env("PIP_NO_CACHE_DIR", "1");
     }
     command
 }
@@ -52,6 +54,15 @@ pub fn cargo<I: IntoIterator<Item = S>, S: AsRef<OsStr>>(arguments: I) -> Comman
 pub fn target() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     root().join(target)
+}
+
+/// Removes a folder below the target folder that no later layer uses: in continuous integration disk space is scarce, and
+/// nothing is built twice.
+pub fn discard(folder: &str) {
+    if is_ci() {
+        // A folder that stays is harmless, so failure is ignored.
+        let _ = std::fs::remove_dir_all(target().join(folder));
+    }
 }
 
 /// Builds the command line in release mode and returns the path of the binary.

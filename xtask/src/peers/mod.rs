@@ -91,10 +91,13 @@ pub fn run(arguments: &[String]) -> Result<()> {
         &format!("cargo xtask bench --peers {}", arguments.join(" ")),
         &sides.ours,
     )?;
+    let rounds = match sides.rounds {
+        1 => "Each program runs once".to_owned(),
+        rounds => format!("The programs run in turn, {rounds} times each, and the figures are medians"),
+    };
     page.add(&format!(
-        "Both programs run alternately, {} times each, in separate processes with {} threads; the figures are medians. The other programs are \
-         the Python wheels of `xtask/peers/requirements.txt`.",
-        sides.rounds, sides.threads
+        "{rounds}, in separate processes with {} threads. The other programs are the Python wheels of `xtask/peers/requirements.txt`.",
+        sides.threads
     ));
     simulated::compare(&sides, &mut page)?;
     steps::compare(&sides, &mut page)?;
