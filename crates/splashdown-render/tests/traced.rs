@@ -391,3 +391,26 @@ fn a_box_that_fills_a_cavity_looks_like_a_box_in_water() {
         cavity.pixel(pixel).iter().zip(solid.pixel(pixel)).all(|(a, b)| a.abs_diff(b) < 12)
     }));
 }
+
+/// Light is averaged in half precision: in a sum, a thousandth of a bright sky would be rounded away.
+#[test]
+fn a_thousand_samples_are_as_bright_as_a_few() {
+    let Some(mut harness) = common::harness() else { return };
+    let size = [12, 9];
+    let mesh = slab([0.0; 3], [2.0, 0.2, 1.0]);
+    let Harness { device, .. } = &harness;
+    let surface = UploadedSurface::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles).unwrap();
+    let meshes = TracedMeshes::new(device, &mesh.vertices, &mesh.normals, &mesh.triangles, []).unwrap();
+    let camera = Camera::framing(&domain(), 28.0, 4.0, 35.0, 1.33);
+    let mut brightness = |samples: u32| {
+        let quality = with(Quality::STANDARD, |q| q.samples = samples);
+        let drawn = DrawnSurface::new(surface.buffers(), Liquid::water());
+        let frame = Frame::new(camera, domain()).with_surface(drawn).with_tracing(&meshes, quality);
+        let picture = harness.draw(size, &frame);
+        let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
+        let bytes: Vec<f64> = pixels.flat_map(|at| picture.pixel(at)).map(f64::from).collect();
+        bytes.iter().sum::<f64>() / bytes.len() as f64
+    };
+    let (few, many) = (brightness(32), brightness(1024));
+    assert!((many - few).abs() < 1.0, "{few} and {many} of 255");
+}

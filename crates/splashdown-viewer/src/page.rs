@@ -46,14 +46,11 @@ pub async fn start_on_page(
     };
     let create = move |context: &eframe::CreationContext<'_>| {
         let render_state = context.wgpu_render_state.as_ref().ok_or("the page has no device")?;
-        let viewer = match browser::take_rescue() {
-            Some(checkpoint) => {
-                let mut viewer = Viewer::idle(&context.egui_ctx, render_state, scene, None)?;
-                viewer.resume(checkpoint)?;
-                viewer
-            }
-            None => Viewer::new(&context.egui_ctx, render_state, scene, None)?,
-        };
+        // The scene is shown if the backup cannot be resumed.
+        let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, None)?;
+        if let Some(checkpoint) = browser::take_rescue() {
+            viewer.resume(checkpoint)?;
+        }
         Ok(Box::new(viewer) as Box<dyn eframe::App>)
     };
     // A runner whose device was lost is unusable.

@@ -80,14 +80,44 @@ fn a_failure_is_reported_and_the_next_scene_runs() {
     until(&mut engine, |_| true);
     let mut broken = scene();
     broken.domain.max = Vec3::splat(1e6);
+    let mut larger = scene();
+    larger.fluid.particle_spacing = 0.04;
     engine.send(Command::Open(Box::new(broken)));
     engine.send(Command::Play(true));
-    engine.send(Command::Open(Box::new(scene())));
+    engine.send(Command::Open(Box::new(larger)));
     engine.send(Command::Play(true));
-    let (_, messages) = until(&mut engine, |now| now.stats.time > 0.01);
+    let (_, messages) = until(&mut engine, |now| now.stats.time > 0.01 && now.stats.particles > 8 * 8 * 6);
     assert!(
         messages.iter().any(|message| matches!(message, Message::Failed(text) if text.contains("cells")))
     );
+}
+
+/// The window shows the old scene as paused then, and continues only when the user asks for it.
+#[test]
+fn after_a_failure_the_scene_that_is_shown_can_be_played() {
+    let Some(gpu) = testing::gpu_or_skip("after_a_failure_the_scene_that_is_shown_can_be_played") else {
+        return;
+    };
+    let mut engine = start(&gpu, Simulate::OnCpu);
+    engine.send(Command::Play(true));
+    until(&mut engine, |now| now.stats.time > 0.01);
+    let mut broken = scene();
+    broken.domain.max = Vec3::splat(1e6);
+    engine.send(Command::Open(Box::new(broken)));
+    engine.send(Command::Play(true));
+    let begun = Instant::now();
+    while !engine.take_messages().iter().any(|message| matches!(message, Message::Failed(_))) {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no failure");
+    }
+    let time = engine.snapshot().unwrap().stats.time;
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(
+        engine.snapshot().unwrap().stats.time,
+        time,
+        "the command of the broken scene plays the old one"
+    );
+    engine.send(Command::Play(true));
+    until(&mut engine, |now| now.playing && now.stats.time > 0.0 && now.stats.time != time);
 }
 
 fn picture(gpu: &Arc<Gpu>, engine: &Engine, mode: DisplayMode) -> Vec<u8> {

@@ -77,8 +77,7 @@ pub enum SimulationError {
     },
     /// There is not one value per particle.
     #[error(
-        "{given} {what} are given, but there are {expected} particles: give one for each, in the order in which particles are \
-         read"
+        "{given} {what} are given, but there are {expected} particles: give one for each, in the order of the particles"
     )]
     Count {
         /// The quantity, such as `velocities`.

@@ -300,6 +300,8 @@ fn measure(scene: &Scene, derived: &Derived, device: &Device) -> Result<Speed, F
 fn measure_with(particles: u64, scene: &Scene, derived: &Derived, device: &Device) -> Result<Speed, Failure> {
     let mut small = bench_scene(particles as u32)?;
     small.solver = scene.solver.clone();
+    // The default follows the size of the domain, and a GPU encodes all iterations.
+    small.solver.max_iterations = Some(Derived::max_iterations(scene));
     let mut simulation = Simulation::new(&small, device)?;
     // The first steps also build pipelines and touch memory for the first time.
     seconds_per_step(&mut simulation, 2)?;

@@ -50,6 +50,6 @@ pub(crate) const FLOOR_SKY: Shader = Shader {
     parts: &[GLOBALS, FULLSCREEN, TRACE, include_str!("floor_sky.wgsl")],
 };
 pub(crate) const ACCUMULATE: Shader =
-    Shader { label: "sum of samples", parts: &[GLOBALS, FULLSCREEN, include_str!("accumulate.wgsl")] };
+    Shader { label: "mean of samples", parts: &[GLOBALS, FULLSCREEN, include_str!("accumulate.wgsl")] };
 pub(crate) const RESOLVE: Shader =
     Shader { label: "tone mapping", parts: &[GLOBALS, FULLSCREEN, include_str!("resolve.wgsl")] };

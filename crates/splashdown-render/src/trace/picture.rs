@@ -7,7 +7,7 @@ use crate::droplets::Droplets;
 use crate::edges::Edges;
 use crate::foam::{Foam, Kinds};
 use crate::glass::{Glass, Panes};
-use crate::pipeline::{ADD, Bind, Depth, PipelineDesc, bind_group, bind_group_layout};
+use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::{Recorder, Start};
 use crate::shadow::FloorLight;
 use crate::targets::{LAYER_FORMAT, texture};
@@ -44,9 +44,9 @@ struct LightTargets {
     size: [u32; 2],
     sample: TextureView,
     depth: TextureView,
-    sum: TextureView,
+    mean: TextureView,
     sample_group: BindGroup,
-    sum_group: BindGroup,
+    mean_group: BindGroup,
 }
 
 impl TracedPicture {
@@ -77,7 +77,7 @@ impl TracedPicture {
             ..PipelineDesc::new(super::LIQUID, &traced, LIGHT)
         };
         let accumulate =
-            PipelineDesc { blend: Some(ADD), ..PipelineDesc::new(super::ACCUMULATE, &of_texture, LIGHT) };
+            PipelineDesc { blend: Some(OVER), ..PipelineDesc::new(super::ACCUMULATE, &of_texture, LIGHT) };
         TracedPicture {
             floor: Floor::new(device, globals, &trees_layout, floor_light),
             background: Background::new(device, plain, LIGHT, 1),
@@ -109,7 +109,7 @@ impl TracedPicture {
         bind_group(device, "trees", &self.trees_layout, &resources)
     }
 
-    /// Records a sample of the picture and adds it to the sum.
+    /// Records a sample of the picture and adds it to the mean of those before it.
     pub fn record_sample(
         &self,
         device: &Device,
@@ -133,7 +133,7 @@ impl TracedPicture {
         }
         self.record_scene(device, recorder, targets, [globals, trees], frame, surface);
         let start = if sample == 0 { Start::Clear } else { Start::Load };
-        let mut pass = recorder.sum("sum of samples", &targets.sum, start);
+        let mut pass = recorder.sum("mean of samples", &targets.mean, start);
         pass.set_pipeline(&self.accumulate);
         pass.set_bind_group(0, globals, &[]);
         pass.set_bind_group(1, &targets.sample_group, &[]);
@@ -193,13 +193,13 @@ impl TracedPicture {
         }
     }
 
-    /// Tone mapping of the sum into the target.
+    /// Tone mapping of the mean into the target.
     pub fn record_result(&self, recorder: &mut Recorder<'_>, globals: &BindGroup, target: &TextureView) {
         let Some(targets) = &self.targets else { return };
         let mut pass = recorder.cleared("tone mapping", target, Color::BLACK);
         pass.set_pipeline(&self.resolve);
         pass.set_bind_group(0, globals, &[]);
-        pass.set_bind_group(1, &targets.sum_group, &[]);
+        pass.set_bind_group(1, &targets.mean_group, &[]);
         pass.draw(0..3, 0..1);
     }
 }
@@ -209,15 +209,15 @@ impl LightTargets {
         let drawn = TextureUsages::RENDER_ATTACHMENT;
         let make = |label, format, usage| texture(device, label, size, format, 1, usage);
         let read = drawn | TextureUsages::TEXTURE_BINDING;
-        let (sample, sum) = (make("sample", LIGHT, read), make("sum", LIGHT, read));
+        let (sample, mean) = (make("sample", LIGHT, read), make("mean", LIGHT, read));
         let group = |view| bind_group(device, "light", layout, &[BindingResource::TextureView(view)]);
         LightTargets {
             size,
             sample_group: group(&sample),
-            sum_group: group(&sum),
+            mean_group: group(&mean),
             depth: make("depth", crate::pipeline::DEPTH, drawn),
             sample,
-            sum,
+            mean,
         }
     }
 }

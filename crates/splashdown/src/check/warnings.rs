@@ -53,22 +53,24 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
             "the scene needs a time step of about {:.1e} s, but solver.min_dt is {:.1e} s",
             derived.dt_estimate, scene.solver.min_dt
         );
-        solver.warn(
-            "min_dt",
-            message,
-            "lower solver.min_dt, or use a coarser particle_spacing or a lower sound_speed",
-        );
+        let hint = match scene.solver.method {
+            Method::Dfsph => "lower solver.min_dt, or use a coarser particle_spacing",
+            _ => "lower solver.min_dt, or use a coarser particle_spacing or a lower sound_speed",
+        };
+        solver.warn("min_dt", message, hint);
     }
     if derived.steps_estimate > MANY_STEPS {
         let message = format!(
             "the scene needs about {} steps of {:.1e} s, limited by {}",
             derived.steps_estimate, derived.dt_estimate, derived.dt_limit
         );
-        solver.warn(
-            "cfl_factor",
-            message,
-            "use a coarser particle_spacing, a shorter duration or a lower sound_speed",
-        );
+        let hint = match scene.solver.method {
+            Method::Dfsph => "use a coarser particle_spacing or a shorter duration",
+            _ => {
+                "use a coarser particle_spacing, a shorter duration, a lower sound_speed or method = \"dfsph\""
+            }
+        };
+        solver.warn("cfl_factor", message, hint);
     }
     if scene.solver.method == Method::Wcsph && derived.sound_speed < SLOWEST_SOUND * derived.reference_speed {
         let ratio = derived.sound_speed / derived.reference_speed;
@@ -94,6 +96,7 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
     }
     let gauge = scene.probes.iter().find(|probe| matches!(probe.quantity, Quantity::Pressure(_)));
     if let Some(gauge) = gauge
+        && scene.solver.method != Method::Dfsph
         && scene.solver.density == DensityMode::Summation
         && !scene.bodies.is_empty()
     {

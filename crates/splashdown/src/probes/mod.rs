@@ -23,7 +23,7 @@ use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::scene::{Domain, Probe, Quantity, Scene};
 
 /// Additional rows, for rounding and for rows that were due before the frame.
-const SPARE_ROWS: u32 = 64;
+const SPARE_ROWS: u64 = 64;
 
 /// The passes of this module.
 #[doc(hidden)]
@@ -105,7 +105,7 @@ impl Probes {
             values: executor.create("probe_values", points.len() * VALUES)?,
             counts: executor.create_from("probe_counts", &vec![0; points.len()])?,
             accounts: executor.create_from("probe_accounts", &accounts)?,
-            rows: executor.create("probe_rows", rows as usize * ROW)?,
+            rows: executor.create("probe_rows", length_of(rows))?,
             points,
         }))
     }
@@ -118,10 +118,13 @@ impl Probes {
         if seconds <= self.longest_frame {
             return Ok(());
         }
-        let rows = assign_rows(&mut self.points, seconds);
-        executor.resize(&mut self.rows, rows as usize * ROW)?;
-        self.longest_frame = seconds;
-        executor.write(self.probes, &self.points)
+        let mut points = self.points.clone();
+        let rows = assign_rows(&mut points, seconds);
+        // Too many rows are an error here, before anything has changed.
+        executor.resize(&mut self.rows, length_of(rows))?;
+        executor.write(self.probes, &points)?;
+        (self.points, self.longest_frame) = (points, seconds);
+        Ok(())
     }
 
     /// The buffers of the probes' state from step to step.
@@ -162,15 +165,21 @@ impl Probes {
     }
 }
 
-/// Gives each probe its part of the rows, for frames of up to this many seconds. Returns the number of all rows.
-fn assign_rows(points: &mut [ProbePoint], seconds: f32) -> u32 {
-    let mut rows = 0;
+/// Gives each probe its part of the rows, for frames of up to this many seconds. Returns the number of all rows, which may
+/// be too many for a buffer.
+fn assign_rows(points: &mut [ProbePoint], seconds: f32) -> u64 {
+    let mut rows = 0_u64;
     for point in points {
-        point.first_row = rows;
-        point.most_rows = (seconds / point.interval).ceil() as u32 + SPARE_ROWS;
-        rows += point.most_rows;
+        let most = ((seconds / point.interval).ceil() as u64).saturating_add(SPARE_ROWS);
+        (point.first_row, point.most_rows) = (rows as u32, most as u32);
+        rows = rows.saturating_add(most);
     }
     rows
+}
+
+/// The length of the buffer of so many rows.
+fn length_of(rows: u64) -> usize {
+    usize::try_from(rows).unwrap_or(usize::MAX).saturating_mul(ROW)
 }
 
 impl Coupling for Probes {

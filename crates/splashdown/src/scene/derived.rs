@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::Serialize;
 
-use super::solver::{KernelKind, Method, SurfaceTension};
+use super::solver::{KernelKind, Method, Solver, SurfaceTension};
 use super::things::Motion;
 use super::types::{Scene, Shape};
 use crate::kernel::WendlandBlend;
@@ -213,10 +213,10 @@ impl Derived {
     /// along the longest side of the domain. An iteration carries a change of the pressure over one support radius, so that
     /// an impact on wide and deep water needs more iterations the finer it is resolved. 40 are enough for most scenes, and
     /// more than 400 would take longer than the shorter steps that follow steps without convergence.
-    pub(crate) fn max_iterations(scene: &Scene) -> u32 {
+    pub fn max_iterations(scene: &Scene) -> u32 {
         let size = scene.domain.max - scene.domain.min;
         let across = 0.25 * size.max_element() / scene.fluid.particle_spacing;
-        scene.solver.max_iterations.unwrap_or(across.clamp(40.0, 400.0) as u32)
+        scene.solver.max_iterations.unwrap_or(across.clamp(Solver::USUAL_ITERATIONS as f32, 400.0) as u32)
     }
 
     /// The time step in s in which body forces move a particle by this many spacings.

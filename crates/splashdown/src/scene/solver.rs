@@ -121,6 +121,9 @@ impl Solver {
         self.support_ratio * particle_spacing
     }
 
+    /// The smallest default of `max_iterations`, and the default from which that of the implicit viscosity follows.
+    pub(crate) const USUAL_ITERATIONS: u32 = 40;
+
     /// The default support ratio.
     pub const NARROW_SUPPORT: f32 = 2.0;
 

@@ -28,7 +28,7 @@ use crate::boundary::part::Part;
 use crate::cells::{self, Cells};
 #[cfg(test)]
 use crate::coupling::Stage;
-use crate::scene::{self, DensityMode, Derived, KernelKind, Method, Scene, SurfaceTension};
+use crate::scene::{self, DensityMode, Derived, KernelKind, Method, Scene, Solver, SurfaceTension};
 use crate::state::{CARRIED, CARRIED_IMPLICIT, Carried, Extras, Fields, begin};
 
 /// Prefixes of the labels of passes that may run again after the end of a frame without testing its flag. Each computes
@@ -56,6 +56,7 @@ pub struct Scheme {
     is_density_integrated: bool,
     surface_tension: SurfaceTension,
     max_iterations: u32,
+    most_viscous_iterations: u32,
     has_implicit_viscosity: bool,
 }
 
@@ -69,6 +70,9 @@ impl Scheme {
                 && scene.solver.density == DensityMode::Continuity,
             surface_tension: scene.solver.surface_tension,
             max_iterations: Derived::max_iterations(scene),
+            most_viscous_iterations: dfsph::most_viscous_iterations(
+                scene.solver.max_iterations.unwrap_or(Solver::USUAL_ITERATIONS),
+            ),
             has_implicit_viscosity: Derived::has_implicit_viscosity(scene),
         }
     }
@@ -118,7 +122,7 @@ impl Scheme {
 
     /// The largest number of iterations of the implicit viscosity in a step.
     fn most_viscous_iterations(&self) -> u32 {
-        dfsph::most_viscous_iterations(self.max_iterations)
+        self.most_viscous_iterations
     }
 
     /// The table of the quantities that its particles carry.

@@ -6,19 +6,25 @@ use splashdown_gpu::{Executor, Readback, block_on};
 use super::Simulation;
 use super::phases::HostAction;
 use crate::bodies::Bodies;
+use crate::scene::{Derived, Scene};
 use crate::state::{DEAD_NON_FINITE, StepCounters, StepState};
 use crate::{SimulationError, Stats};
 
 /// The largest number of steps in one submission to a device: bounds the time for which the device is unresponsive.
 pub(super) const MOST_STEPS: u32 = 64;
-/// The same with an implicit pressure, whose steps take several times as long.
-pub(super) const MOST_IMPLICIT_STEPS: u32 = 8;
+/// The largest number of pressure iterations in one submission.
+const MOST_ITERATIONS: u32 = 320;
 /// The largest number of steps in one submission on the CPU, and on a GPU if the host has to act between steps. The
 /// CPU executor tests for the end of the frame before each step.
 pub(super) const HOST_STEPS: u32 = 16;
 /// The same between collisions with an implicit pressure. In one of its long steps a body moves by a good part of a
 /// spacing: later, bodies would have passed into one another, and moving them apart would burst the fluid between them.
 pub(super) const HOST_IMPLICIT_STEPS: u32 = 1;
+
+/// The largest number of steps in one submission with an implicit pressure.
+pub(super) fn most_implicit_steps(scene: &Scene) -> u32 {
+    (MOST_ITERATIONS / Derived::max_iterations(scene)).max(1)
+}
 
 /// A frame in progress.
 pub(super) struct FrameInProgress {

@@ -112,7 +112,8 @@ impl Simulation {
 
     /// Creates a simulation of another scene with the present fluid, at the present time. Particles retain their
     /// positions, velocities and ids; those outside the new domain or inside a new body are removed. A dynamic body
-    /// that both scenes contain, by name, retains its position. The fluid blocks of the scene are not added, and the
+    /// that both scenes contain, by name, retains its position; scripted bodies are where their scripts are at this time. The
+    /// fluid blocks of the scene are not added, and the
     /// counts of its emitters start from zero.
     ///
     /// Afterwards this simulation can be read, but not advanced.

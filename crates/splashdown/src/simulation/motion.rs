@@ -178,10 +178,15 @@ mod tests {
     /// Thousands of short steps: a running sum in single precision would be off by a thousandth.
     #[test]
     fn the_time_on_the_device_is_that_of_the_host() {
-        let mut simulation = simulation();
-        let mut scene = simulation.scene().clone();
-        scene.solver.max_dt = 1e-4;
-        assert!(simulation.update_parameters(&scene).unwrap());
+        let scene = Scene::builder("box", 10.0)
+            .domain([0.0; 3], [0.2, 0.2, 0.2])
+            .particle_spacing(0.05)
+            .block([0.0; 3], [0.1, 0.1, 0.1])
+            .set("solver.method", "wcsph")
+            .set("solver.max_dt", 1e-4)
+            .build()
+            .unwrap();
+        let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
         for _ in 0..40 {
             simulation.advance(0.1).unwrap();
         }

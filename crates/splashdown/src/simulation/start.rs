@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use splashdown_gpu::{Executor, Flag, block_on};
 use splashdown_io::Particles;
 
-use super::frame::{HOST_IMPLICIT_STEPS, HOST_STEPS, MOST_IMPLICIT_STEPS, MOST_STEPS};
+use super::frame::{HOST_IMPLICIT_STEPS, HOST_STEPS, MOST_STEPS, most_implicit_steps};
 use super::phases::{HostAction, Phase, Schedule};
 use super::{Simulation, packing};
 use crate::bodies::{Bodies, LoadedBody};
@@ -226,7 +226,7 @@ impl Simulation {
         }
         let end_step = state::end_step::record(&self.fields);
         let done = Flag::new(self.fields.state, offset_of!(StepState, done)).except(schemes::REPEATABLE);
-        let most = if scheme.is_implicit() { MOST_IMPLICIT_STEPS } else { MOST_STEPS };
+        let most = if scheme.is_implicit() { most_implicit_steps(&self.scene) } else { MOST_STEPS };
         self.schedule = Schedule::new(phases, &end_step, done, most);
         Ok(())
     }

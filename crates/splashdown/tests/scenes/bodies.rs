@@ -133,7 +133,7 @@ fn errors_in_bodies_name_the_allowed_values() {
         ),
         (
             "name = \"a\"\nmesh = \"cube\"\n[[body]]\nname = \"A\"\nmesh = \"cube\"",
-            &["two bodies called \"A\""],
+            &["bodies \"a\" and \"A\" differ only in case"],
         ),
         ("name = \"a\"\nmesh = \"cube\"\nmotion = \"scripted\"", &["needs a keyframe, move or turn"]),
         (

@@ -44,6 +44,8 @@ pub(super) struct Worker {
     saved_foam: Option<KeptFoam>,
     opened: Option<Arc<Opened>>,
     playing: bool,
+    /// A scene could not be opened: the command to play that was sent with it has no effect.
+    ignores_play: bool,
     wants_surface: bool,
     wants_timing: bool,
     mouse_force: Option<MouseForce>,
@@ -74,6 +76,7 @@ impl Worker {
             saved_foam: None,
             opened: None,
             playing: false,
+            ignores_play: false,
             wants_surface: false,
             wants_timing: false,
             mouse_force: None,
@@ -112,7 +115,11 @@ impl Worker {
 
     async fn execute(&mut self, command: Command) -> Result<(), SimulationError> {
         match command {
-            Command::Open(scene) => return self.open(*scene).await,
+            Command::Open(scene) => {
+                let opened = self.open(*scene).await;
+                self.ignores_play = opened.is_err();
+                return opened;
+            }
             Command::Change(scene) => {
                 // A refused change leaves the simulation as it is.
                 if let Err(error) = self.change(*scene).await {
@@ -121,6 +128,9 @@ impl Worker {
                 }
             }
             Command::Play(playing) => {
+                if std::mem::take(&mut self.ignores_play) {
+                    return Ok(());
+                }
                 if playing {
                     self.reopen().await?;
                 }
@@ -164,8 +174,17 @@ impl Worker {
                 self.reopen().await?;
                 return self.export().await;
             }
-            Command::Checkpoint(text, purpose) => return self.checkpoint(&text, purpose).await,
-            Command::Resume(checkpoint) => return self.resume(&checkpoint).await,
+            Command::Checkpoint(text, purpose) => {
+                if matches!(purpose, Purpose::Export) {
+                    self.reopen().await?;
+                }
+                return self.checkpoint(&text, purpose).await;
+            }
+            Command::Resume(checkpoint) => {
+                let resumed = self.resume(&checkpoint).await;
+                self.ignores_play = resumed.is_err();
+                return resumed;
+            }
             Command::Quit => {}
         }
         Ok(())

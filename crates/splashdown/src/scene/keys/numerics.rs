@@ -93,7 +93,7 @@ pub(super) static SOLVER: Table = Table {
         key(
             "max_iterations",
             Kind::Integer(range(2.0, 1000.0, "")),
-            "Largest number of pressure iterations per step; dfsph. Default: a quarter of the spacings along the longest side of the domain, at least 40 and at most 400. An implicit viscosity takes at most five times as many.",
+            "Largest number of pressure iterations per step; dfsph. Default: a quarter of the spacings along the longest side of the domain, at least 40 and at most 400. An implicit viscosity takes at most five times as many, 200 by default.",
         )
         .also(&["maxIterations", "iterations"]),
         key("sort", Kind::Word(words::<Sort>), "Algorithm that sorts particles into cells.")

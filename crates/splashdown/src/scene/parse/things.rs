@@ -1,6 +1,6 @@
 //! The section `[[body]]`.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use glam::{EulerRot, Quat, Vec3};
 
@@ -33,14 +33,17 @@ pub(super) fn read_unique<T>(
     mut read: impl FnMut(&Section<'_>) -> Part<T>,
     name: impl Fn(&T) -> &str,
 ) -> Vec<Part<T>> {
-    let mut names = HashSet::new();
+    let mut names: HashMap<String, String> = HashMap::new();
     let mut one = |section: &Section<'_>| {
         let thing = read(section)?;
-        // Bodies are files of these names, and some file systems ignore case.
-        if names.insert(name(&thing).to_ascii_lowercase()) {
-            return Ok(thing);
-        }
-        let message = format!("there are two {kinds} called {:?}", name(&thing));
+        // Bodies are files of these names, and some file systems ignore case. The other kinds have the same rule.
+        let own = name(&thing);
+        let Some(other) = names.insert(own.to_ascii_lowercase(), own.to_owned()) else { return Ok(thing) };
+        let message = if other == own {
+            format!("there are two {kinds} called {own:?}")
+        } else {
+            format!("the names of the {kinds} {other:?} and {own:?} differ only in case")
+        };
         Err(section.complain("name", message, "unique names", "rename one of them"))
     };
     sections.iter().map(&mut one).collect()

@@ -1,6 +1,7 @@
 //! Begins a frame: sets its start, its duration and the number of particles to process.
 //!
-//! A frame of zero seconds sets only this number, for a sort without a step.
+//! Also limits the first step to what the parameters allow, which may have changed since the last one. A frame of zero
+//! seconds serves a sort without a step.
 
 mod cpu;
 
