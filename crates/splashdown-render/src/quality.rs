@@ -6,8 +6,7 @@ use crate::RenderError;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Quality {
-    /// Samples per pixel, 1 to 4096. The time is proportional to it. Light is averaged with 11 bits, so that more than a
-    /// thousand samples gain little.
+    /// Samples per pixel, 1 to 4096. The time is proportional to it.
     pub samples: u32,
     /// Diameter of the lens in metres. 0: everything is in focus.
     pub aperture: f32,

@@ -145,12 +145,6 @@ impl<'a> Recorder<'a> {
         self.begin(label, colour(view, load), Some((depth, operations)))
     }
 
-    /// A pass that adds to a texture, or averages into it.
-    pub fn sum(&mut self, label: &'static str, view: &TextureView, start: Start) -> RenderPass<'_> {
-        let load = if start == Start::Load { LoadOp::Load } else { LoadOp::Clear(Color::TRANSPARENT) };
-        self.begin(label, colour(view, load), None)
-    }
-
     /// A pass over the existing contents of a texture.
     pub fn over(&mut self, label: &'static str, view: &TextureView) -> RenderPass<'_> {
         self.begin(label, colour(view, LoadOp::Load), None)

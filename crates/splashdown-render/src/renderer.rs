@@ -370,7 +370,7 @@ impl Renderer {
             traced.record_sample(device, &mut recorder, globals, &trees, frame, sample);
         }
         if samples.end == quality.samples {
-            traced.record_result(&mut recorder, &of_result, target);
+            traced.record_result(&mut recorder, &of_result, target, samples.end - 1);
             self.overlay.record(&mut recorder, target);
         }
         recorder.finish();

