@@ -120,11 +120,6 @@ impl Scheme {
         self.has_implicit_viscosity
     }
 
-    /// The largest number of iterations of the implicit viscosity in a step.
-    fn most_viscous_iterations(&self) -> u32 {
-        self.most_viscous_iterations
-    }
-
     /// The table of the quantities that its particles carry.
     pub fn carried(&self) -> &'static [Carried] {
         if self.is_implicit() { CARRIED_IMPLICIT } else { CARRIED }

@@ -118,7 +118,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         viscous_factor: implicit_viscosity * volume * viscous::pair::factor(support_radius)
             / viscous::pair::lattice_factor(f64::from(solver.support_ratio)) as f32,
         viscous_tolerance: dfsph::viscous_tolerance(solver.tolerance),
-        most_viscous_iterations: scheme.most_viscous_iterations(),
+        most_viscous_iterations: scheme.most_viscous_iterations,
         tension_factor: match solver.surface_tension {
             SurfaceTension::Csf => {
                 let scale = 1.0 / support_radius;

@@ -260,7 +260,7 @@ impl<'a> Step<'a> {
         self.couple(Stage::Viscosity(ViscousStage::Update));
         let iteration = std::mem::replace(&mut self.recorder.recording, step);
         let stopped = Flag::new(self.recorder.fields.viscous, offset_of!(ViscousState, stopped));
-        let rounds = Rounds::new(self.scheme.most_viscous_iterations());
+        let rounds = Rounds::new(self.scheme.most_viscous_iterations);
         self.recorder.recording.repeat(&iteration, &rounds, stopped);
         self.couple(Stage::Viscosity(ViscousStage::Force));
         self.recorder.dispatch_particles(&viscous::finish::FINISH);
