@@ -107,6 +107,21 @@ pub enum IoError {
         limit: usize,
     },
 
+    /// The frames of an animated scene need more than a file of its format can hold. The file contains the first of them.
+    #[error(
+        "`{}` {}: a GLB file holds at most 4 GB. Use the format usd for all {last} frames, or fewer frames",
+        path.display(),
+        frame.map_or_else(|| "contains no frame".to_owned(), |frame| format!("ends with frame {frame}"))
+    )]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+        /// The last frame in it.
+        frame: Option<u32>,
+        /// The last frame that was given.
+        last: u32,
+    },
+
     /// The number of a picture's bytes does not match its size.
     #[error("a picture of {width} x {height} pixels needs {expected} bytes (RGBA, 8 bits each), got {given}")]
     PictureSize {

@@ -122,8 +122,8 @@ impl Format {
             ..NONE
         },
         Self { name: "glTF", ending: ".gltf", read_mesh: Some(gltf::read_mesh), ..NONE },
-        // Written by `usd::PointSeries` and `usd::MeshSeries`.
-        Self { name: "USD", ending: ".usda", is_series: true, has_velocities: true, ..NONE },
+        // Written by `StageFile`.
+        Self { name: "USD", ending: ".usdc", is_series: true, has_velocities: true, ..NONE },
     ];
 
     /// The format of a file by the ending of its name, in any case; `.bgeo.gz` is BGEO.
@@ -154,7 +154,7 @@ impl Format {
         self.read_particles.is_some()
     }
 
-    /// Whether [`write_particles`](crate::write_particles) writes it, or [`PointSeries`](crate::usd::PointSeries).
+    /// Whether [`write_particles`](crate::write_particles) writes it, or [`StageFile`](crate::StageFile).
     #[must_use]
     pub fn writes_particles(&self) -> bool {
         self.write_particles.is_some() || self.is_series
@@ -166,7 +166,7 @@ impl Format {
         self.read_mesh.is_some()
     }
 
-    /// Whether [`write_mesh`](crate::write_mesh) writes it, or [`MeshSeries`](crate::usd::MeshSeries).
+    /// Whether [`write_mesh`](crate::write_mesh) writes it, or [`StageFile`](crate::StageFile).
     #[must_use]
     pub fn writes_meshes(&self) -> bool {
         self.write_mesh.is_some() || self.is_series

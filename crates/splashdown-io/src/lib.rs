@@ -8,7 +8,7 @@
 //! |---|---|---|---|
 //! | [`Particles`] | [`read_particles`], [`write_particles`] | PLY, VTK, VTU, BGEO, NPZ; read only: VTP, NPY, XYZ | ParaView, Blender, Houdini, MeshLab, numpy |
 //! | [`Mesh`] | [`read_mesh`], [`write_mesh`] | PLY, OBJ, STL, glTF; written only: VTK | every 3-D program |
-//! | all frames of a run | [`usd::PointSeries`], [`usd::MeshSeries`] | USD | Blender, Houdini, Maya |
+//! | all frames of a run, with bodies, camera and materials | [`StageFile`] | USD, GLB | Blender, Houdini, Maya |
 //! | index of the VTU files of a run | [`pvd::write_index`] | PVD | ParaView |
 //! | [`Picture`] | `picture::read_png`, `picture::write_png` (feature `png`) | PNG | every program |
 //! | film | [`Film`] | MP4, encoded by the `ffmpeg` that the user has installed | every player |
@@ -90,10 +90,12 @@ pub mod picture;
 pub mod ply;
 pub mod pvd;
 mod read;
+pub mod stage;
+mod stage_file;
 pub mod stl;
 mod table;
 mod topology;
-pub mod usd;
+mod usd;
 pub mod vtk;
 pub mod vtu;
 mod writer;
@@ -110,6 +112,7 @@ pub use mesh::write_mesh;
 pub use particles::write_particles;
 pub use picture::Picture;
 pub use read::{read_mesh, read_particles, read_particles_with_attributes};
+pub use stage_file::{PART_ENDING, StageFile};
 pub use table::CsvLog;
 pub use topology::Topology;
 pub use writer::{FrameWriter, Job, WriteFailure, WrittenFile};

@@ -18,7 +18,8 @@ use crate::gltf;
 use crate::mesh::write_mesh;
 use crate::particles::write_particles;
 use crate::picture::Picture;
-use crate::usd::{MeshSeries, PointSeries};
+use crate::stage::Sample;
+use crate::stage_file::StageFile;
 
 /// One file to write, or one frame of a film or series. Data is shared, so that several formats need no copy.
 #[derive(Debug, Clone)]
@@ -38,24 +39,17 @@ pub enum Job {
     /// The next picture of a film. A failure of the film does not stop the writer, because the film can be made from the
     /// pictures later; [`Film::finish`] reports it.
     Film(Arc<Film>, Arc<Picture>),
-    /// Number and mesh of a frame of an animated surface; [`MeshSeries::finish`] writes the file.
-    UsdMesh(Arc<MeshSeries>, u32, Arc<Mesh>),
-    /// Number and particles of a frame of animated particles; [`PointSeries::finish`] writes the file.
-    UsdPoints(Arc<PointSeries>, u32, Arc<Particles>),
-    /// Flushes the frames of an animated surface to the disk.
-    SyncMesh(Arc<MeshSeries>),
-    /// Flushes the frames of animated particles to the disk.
-    SyncPoints(Arc<PointSeries>),
+    /// A frame of an animated scene: its number, and the number of each object with its data;
+    /// [`StageFile::finish`] writes the files.
+    Stage(Arc<StageFile>, u32, Vec<(usize, Sample)>),
+    /// Flushes the frames of an animated scene to the disk.
+    SyncStage(Arc<StageFile>),
 }
 
 impl Job {
     /// Whether the job writes a file, not a frame of a film or series.
     fn is_file(&self) -> bool {
-        let series = matches!(
-            self,
-            Self::UsdMesh(..) | Self::UsdPoints(..) | Self::SyncMesh(..) | Self::SyncPoints(..)
-        );
-        !series && !matches!(self, Self::Film(..))
+        !matches!(self, Self::Film(..) | Self::Stage(..) | Self::SyncStage(..))
     }
 }
 
@@ -206,20 +200,12 @@ fn write(job: &Job) -> Result<Option<WrittenFile>, IoError> {
             film.push(picture);
             None
         }
-        Job::UsdMesh(series, frame, mesh) => {
-            series.push(*frame, mesh)?;
+        Job::Stage(stage, frame, samples) => {
+            stage.push(*frame, samples)?;
             None
         }
-        Job::UsdPoints(series, frame, particles) => {
-            series.push(*frame, particles)?;
-            None
-        }
-        Job::SyncMesh(series) => {
-            series.sync()?;
-            None
-        }
-        Job::SyncPoints(series) => {
-            series.sync()?;
+        Job::SyncStage(stage) => {
+            stage.sync()?;
             None
         }
     })

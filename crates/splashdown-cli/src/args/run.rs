@@ -28,9 +28,11 @@ Files in the output folder:
   mesh/surface_0000.ply, ...             the closed surface of the fluid; its vertices have
                                          velocities in {with_velocities}
   droplets/droplets_0000.ply, ...        isolated particles, which are not part of the surface, with
-                                         velocities and diameter; with --formats usd, droplets.usda
-  particles.usda, surface.usda           all frames in one file, with --formats usd; written at
-                                         the end, until then its data is in checkpoints/*.usdpart
+                                         velocities and diameter
+  scene.usdc, scene.glb                  all frames of surface, droplets, foam and bodies, with tank,
+                                         camera and materials, with --formats usd,glb; written at
+                                         the end, until then in checkpoints/scene.scenepart
+  particles.usdc                         all frames of the particles, with --formats usd
   pictures/surface_0000.png, particles_0000.png
   surface.mp4, particles.mp4             if ffmpeg is installed
   checkpoints/checkpoint_0010.splashdown to resume from; written after Ctrl-C and with
@@ -38,7 +40,7 @@ Files in the output folder:
   run.json                               the summary, the energy balance and all alarms
 Every file is complete or absent. Frames of an earlier run in the same folder are removed.
 A resumed run keeps the settings of the original run, except those given again. If all frames
-are complete, --resume completes the film, the USD files and run.json.
+are complete, --resume completes the film, the scene files and run.json.
 
 With --json, stdout has one object per line. Each has the keys event, frame, time, steps, dt,
 particles, density_error, max_speed, volume, triangles and files; unknown values are null.

@@ -9,11 +9,20 @@ use serde_json::Value;
 
 use crate::place::{Outcome, Place, assert_refused, can_draw, names, stderr};
 
-/// The small scene with a probe and USD files only.
-fn usd_scene(place: &Place) -> std::io::Result<()> {
+/// The small scene with a probe, and with scene files only.
+fn scene_files(place: &Place) -> std::io::Result<()> {
     let scene = fs::read_to_string(place.path("small.toml"))?;
     let probe = "\n[[probe]]\nname = \"level\"\nquantity = \"height\"\nposition = [0.2, 0, 0.1]\n";
-    place.write("small.toml", format!("{scene}formats = [\"usd\"]\n{probe}")).map(drop)
+    place.write("small.toml", format!("{scene}formats = [\"usd\", \"glb\"]\n{probe}")).map(drop)
+}
+
+/// The number of frames of the surface in `scene.glb`.
+fn surfaces(place: &Place) -> Result<usize, Box<dyn std::error::Error>> {
+    let bytes = fs::read(place.path("out/scene.glb"))?;
+    let length = u32::from_le_bytes(bytes[12..16].try_into()?) as usize;
+    let scene: Value = serde_json::from_slice(&bytes[20..20 + length])?;
+    let names = scene["nodes"].as_array().into_iter().flatten().filter_map(|node| node["name"].as_str());
+    Ok(names.filter(|name| name.starts_with("surface_")).count())
 }
 
 fn start(place: &Place, more: &[&str]) -> std::io::Result<Child> {
@@ -51,9 +60,9 @@ fn temporary_files(place: &Place) -> Result<Vec<String>, Box<dyn std::error::Err
 }
 
 #[test]
-fn a_killed_run_continues_its_usd_files() -> Outcome {
+fn a_killed_run_continues_its_scene_files() -> Outcome {
     let place = Place::new()?;
-    usd_scene(&place)?;
+    scene_files(&place)?;
     let options = ["--frames", "12", "--checkpoint-every", "2"];
     let whole = ["run", "small.toml", "--out", "uninterrupted", "--device", "cpu", "--no-pictures"];
     let output = place.splashdown(&[&whole[..], &options].concat()).output()?;
@@ -64,20 +73,21 @@ fn a_killed_run_continues_its_usd_files() -> Outcome {
     run.kill()?;
     run.wait()?;
     assert_eq!(report(&place)?["status"], "running");
-    assert!(!place.path("out/particles.usda").exists());
-    // The data of the USD files is next to the checkpoint that needs it. Nothing else remains.
-    assert!(place.path("out/checkpoints/particles_points.usdpart").exists());
+    assert!(!place.path("out/particles.usdc").exists());
+    // The data of the scene files is next to the checkpoint that needs it. Nothing else remains.
+    assert!(place.path("out/checkpoints/particles.scenepart").exists());
     if cfg!(target_os = "linux") {
         assert_eq!(temporary_files(&place)?, Vec::<String>::new());
     }
-    // A kill in the middle of a line.
-    let part = place.path("out/checkpoints/particles_points.usdpart");
-    let text = fs::read_to_string(&part)?;
-    fs::write(&part, format!("{text}            99: [(0.1, 0"))?;
+    // A kill in the middle of an array.
+    let part = place.path("out/checkpoints/particles.scenepart");
+    let mut bytes = fs::read(&part)?;
+    bytes.extend_from_slice(b"SPLD\0\0\x01\0");
+    fs::write(&part, bytes)?;
 
     let output = place.splashdown(&["run", "--resume", "out"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
-    for file in ["particles.usda", "surface.usda", "droplets.usda", "probes/level.csv"] {
+    for file in ["particles.usdc", "scene.usdc", "scene.glb", "probes/level.csv"] {
         let [whole, resumed] = ["uninterrupted", "out"].map(|root| fs::read(place.path(root).join(file)));
         assert!(whole? == resumed?, "{file} differs");
     }
@@ -86,26 +96,25 @@ fn a_killed_run_continues_its_usd_files() -> Outcome {
     // The complete files are continued, too.
     let output = place.splashdown(&["run", "--resume", "out", "--frames", "14"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
-    let text = fs::read_to_string(place.path("out/particles.usda"))?;
-    assert!(text.contains("endTimeCode = 14") && text.contains("startTimeCode = 0"), "{:.200}", text);
-    assert_eq!(names(&place.path("out"))?.iter().filter(|name| name.ends_with(".usda")).count(), 3);
+    assert_eq!(surfaces(&place)?, 15);
+    assert_eq!(names(&place.path("out"))?.iter().filter(|name| name.ends_with(".usdc")).count(), 2);
     Ok(())
 }
 
 #[test]
-fn a_run_without_its_usd_file_is_finished() -> Outcome {
+fn a_run_without_its_scene_file_is_finished() -> Outcome {
     let place = Place::new()?;
-    usd_scene(&place)?;
+    scene_files(&place)?;
     // A folder in the place of the file makes its last write fail, as a full disk does.
-    fs::create_dir_all(place.path("out/particles.usda"))?;
+    fs::create_dir_all(place.path("out/scene.usdc"))?;
     let output = place.run_small(&["--frames", "4", "--checkpoint-every", "4"]).output()?;
-    assert_refused(&output, 5, &["particles.usda"]);
+    assert_refused(&output, 5, &["scene.usdc"]);
     assert_eq!(report(&place)?["status"], "failed");
-    fs::remove_dir(place.path("out/particles.usda"))?;
+    fs::remove_dir(place.path("out/scene.usdc"))?;
     let output = place.splashdown(&["run", "--resume", "out"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
-    let text = fs::read_to_string(place.path("out/particles.usda"))?;
-    assert!(text.contains("endTimeCode = 4") && text.contains("            4: [("), "{text:.300}");
+    assert!(fs::read(place.path("out/scene.usdc"))?.starts_with(b"PXR-USDC"));
+    assert_eq!(surfaces(&place)?, 5);
     assert_eq!(report(&place)?["status"], "finished");
     assert_eq!(report(&place)?["complete_frames"], 5);
     // Nothing is left to do, which is an error as before.
@@ -118,31 +127,34 @@ fn a_run_without_its_usd_file_is_finished() -> Outcome {
 #[cfg(target_os = "linux")]
 fn a_run_on_a_full_disk_is_finished_when_there_is_space() -> Outcome {
     let place = Place::new()?;
-    usd_scene(&place)?;
+    scene_files(&place)?;
     let Some(disk) = crate::place::TinyDisk::mount(place.path("disk"), 24_576)? else {
         eprintln!("SKIPPED: no small file system can be mounted");
         return Ok(());
     };
     let run = ["run", "small.toml", "--out", "disk/out", "--device", "cpu", "--no-pictures"];
     let run = [&run[..], &["--frames", "24", "--checkpoint-every", "24"]].concat();
-    // How much data the run writes before the USD files, and in total.
+    // How much data the run writes before the scene files, and in total.
     let output = place.splashdown(&run).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     let size = |name: &str| fs::metadata(disk.0.join(name)).map(|data| data.len());
-    let usd = size("out/particles.usda")? + size("out/surface.usda")?;
+    let whole = || -> std::io::Result<u64> {
+        ["particles.usdc", "scene.usdc", "scene.glb"].iter().map(|name| size(&format!("out/{name}"))).sum()
+    };
+    let scenes = whole()?;
     let checkpoint = size("out/checkpoints/checkpoint_0024.splashdown")?;
     fs::remove_dir_all(disk.0.join("out"))?;
-    // Room for everything but the joined USD files.
-    let room = usd + checkpoint + 160 * 1024;
+    // Room for the data and the checkpoint, but not for all the scene files.
+    let room = scenes + checkpoint + 160 * 1024;
     fs::write(disk.0.join("filler"), vec![0; 24_576 * 1024 - room as usize])?;
     let output = place.splashdown(&run).output()?;
     assert_refused(&output, 5, &["full"]);
     let checkpoint = disk.0.join("out/checkpoints/checkpoint_0024.splashdown");
-    assert!(checkpoint.exists(), "{} bytes of USD: {}", usd, stderr(&output));
+    assert!(checkpoint.exists(), "{} bytes of scene files: {}", scenes, stderr(&output));
     fs::remove_file(disk.0.join("filler"))?;
     let output = place.splashdown(&["run", "--resume", "disk/out"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
-    assert_eq!(size("out/particles.usda")? + size("out/surface.usda")?, usd);
+    assert_eq!(whole()?, scenes);
     Ok(())
 }
 
@@ -180,7 +192,7 @@ fn a_missing_film_is_made_from_the_pictures() -> Outcome {
 #[test]
 fn a_probe_table_that_is_too_short_is_reported() -> Outcome {
     let place = Place::new()?;
-    usd_scene(&place)?;
+    scene_files(&place)?;
     let output = place.run_small(&["--frames", "2", "--checkpoint-every", "2"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     let table = place.path("out/probes/level.csv");
@@ -199,7 +211,7 @@ fn a_probe_table_that_is_too_short_is_reported() -> Outcome {
     assert!(resumed.starts_with(&rows[..rows.len() - 1].join("\n")), "complete rows remain: {resumed}");
     // Control: a complete table is not reported.
     let intact = Place::new()?;
-    usd_scene(&intact)?;
+    scene_files(&intact)?;
     assert!(intact.run_small(&["--frames", "2", "--checkpoint-every", "2"]).output()?.status.success());
     let output = intact.splashdown(&["run", "--resume", "out", "--frames", "3"]).output()?;
     assert!(output.status.success() && !stderr(&output).contains("probe table"), "{}", stderr(&output));

@@ -113,10 +113,20 @@ fn isolated_particles_leave_the_surface_and_are_written_as_droplets() -> Outcome
         assert!((droplet / 0.05_f64.powi(3) - 1.0).abs() < 1e-2, "{droplet} m^3");
     }
     // Foam is written as points, too.
-    assert!(file("particles/spray_0002.glb").exists() && file("bubbles.usda").exists());
-    let usd = fs::read_to_string(file("droplets.usda"))?;
-    assert!(usd.contains("def Points \"droplets\"") && usd.contains("widths = [0.0620"), "{usd}");
-    assert!(usd.contains("velocities.timeSamples"), "{usd}");
+    assert!(file("particles/spray_0002.glb").exists() && file("particles.usdc").exists());
+    assert!(fs::read(file("scene.usdc"))?.starts_with(b"PXR-USDC"));
+    let scene = glb_document(&file("scene.glb"))?;
+    let nodes: Vec<&str> =
+        scene["nodes"].as_array().ok_or("nodes")?.iter().filter_map(|node| node["name"].as_str()).collect();
+    for name in ["surface_0000", "surface_0002", "droplets_0001", "tank", "camera", "splashdown"] {
+        assert!(nodes.contains(&name), "{name} is not in {nodes:?}");
+    }
+    assert!(!nodes.contains(&"spray_0000"), "no spray at the start: {nodes:?}");
+    let droplets =
+        scene["meshes"].as_array().ok_or("meshes")?.iter().find(|mesh| mesh["name"] == "droplets_0001");
+    let droplets = droplets.ok_or("no droplets")?;
+    assert!((droplets["extras"]["diameter"].as_f64().ok_or("no diameter")? - 0.062_035).abs() < 1e-5);
+    assert!(droplets["primitives"][0]["attributes"]["_VELOCITY"].is_u64(), "{droplets}");
 
     // Drawn again, with and without limits.
     if can_draw() {
@@ -136,7 +146,7 @@ fn isolated_particles_leave_the_surface_and_are_written_as_droplets() -> Outcome
     assert!(output.status.success(), "{}", stderr(&output));
     let mesh = ply::read_mesh(&file("mesh/surface_0000.ply"))?;
     assert_eq!(mesh.topology()?.components, 2);
-    assert!(!file("droplets/droplets_0000.glb").exists() && !file("droplets.usda").exists());
+    assert!(!file("droplets/droplets_0000.glb").exists() && !file("scene.usdc").exists());
 
     for (command, limit) in [("run", "33"), ("render", "-1")] {
         let input = if command == "run" { "drop.toml" } else { "out" };
@@ -389,6 +399,13 @@ fn each_probe_has_a_table_with_units() -> Outcome {
     Ok(())
 }
 
+/// The description in a GLB file.
+fn glb_document(path: &Path) -> Result<Value, Box<dyn std::error::Error>> {
+    let bytes = fs::read(path)?;
+    let length = u32::from_le_bytes(bytes[12..16].try_into()?) as usize;
+    Ok(serde_json::from_slice(&bytes[20..20 + length])?)
+}
+
 #[test]
 fn every_format_contains_the_same_frames() -> Outcome {
     let place = Place::new()?;
@@ -418,11 +435,11 @@ fn every_format_contains_the_same_frames() -> Outcome {
         );
         assert_eq!(frame > 0, surface < -0.01, "frame {frame}: {surface} m/s");
     }
-    for name in ["surface.usda", "particles.usda"] {
-        let text = fs::read_to_string(place.path(&format!("out/{name}")))?;
-        assert!(text.starts_with("#usda 1.0") && text.contains("endTimeCode = 2"), "{name}");
-        assert_eq!(text.matches("            2: [").count(), 6, "attributes of {name}");
+    for name in ["scene.usdc", "particles.usdc"] {
+        assert!(fs::read(place.path(&format!("out/{name}")))?.starts_with(b"PXR-USDC"), "{name}");
     }
+    let scene = glb_document(&place.path("out/scene.glb"))?;
+    assert_eq!(scene["animations"][0]["channels"].as_array().map(Vec::len), Some(5), "{scene:.400}");
     let hidden = fs::read_dir(place.path("out"))?.flatten();
     assert!(hidden.into_iter().all(|entry| !entry.file_name().to_string_lossy().starts_with('.')));
     Ok(())

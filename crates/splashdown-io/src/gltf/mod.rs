@@ -11,9 +11,11 @@
 
 mod buffers;
 mod document;
+mod stage;
 mod transform;
 mod write;
 
+pub(crate) use stage::{LARGEST, write_stage};
 pub(crate) use write::write_mesh;
 pub use write::{write_mesh_to, write_points, write_points_to};
 

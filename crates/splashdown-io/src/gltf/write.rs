@@ -10,15 +10,15 @@ use crate::data::{Mesh, Particles};
 use crate::error::IoError;
 
 /// The format's constants for the use of a part of a buffer, and for number types.
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-const UNSIGNED_INT: u32 = 5125;
-const FLOAT: u32 = 5126;
+pub(super) const ARRAY_BUFFER: u32 = 34962;
+pub(super) const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+pub(super) const UNSIGNED_INT: u32 = 5125;
+pub(super) const FLOAT: u32 = 5126;
 /// Largest size of the arrays in bytes. Lengths have 32 bits; the JSON before the arrays is short.
 const LARGEST: u64 = u32::MAX as u64 - (1 << 16);
 /// Primitive modes.
-const POINTS: u32 = 0;
-const TRIANGLES: u32 = 4;
+pub(super) const POINTS: u32 = 0;
+pub(super) const TRIANGLES: u32 = 4;
 
 pub(crate) fn write_mesh(path: &Path, mesh: &Mesh) -> Result<u64, IoError> {
     mesh.check()?;
@@ -39,17 +39,16 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     Arrays::of_mesh(mesh).write_to(out)
 }
 
-/// Writes particles as points: a binary file in which `POSITION` is in m, `_VELOCITY` in m/s, and other attributes with
-/// one value per particle have their name in capitals after an underscore, such as `_WIDTH`. Without particles the scene
-/// is empty.
+/// Writes particles as points: a binary file in which `POSITION` is in m and `_VELOCITY` in m/s. The `extras` of the mesh
+/// contain the `diameter` in m if the particles have the attribute `width`. Other attributes are left out: Blender 5.0
+/// fails at random to import vectors and numbers beside each other. Without particles the scene is empty.
 ///
 /// # Errors
 /// Those of [`Particles::check`]; [`IoError::TooMany`] if the file would exceed 4 GB; [`IoError::Write`].
 pub fn write_points(path: &Path, particles: &Particles) -> Result<u64, IoError> {
     particles.check()?;
-    let size = (24 + 4 * particles.attributes.len() as u64) * particles.len() as u64;
-    if size > LARGEST {
-        let limit = (LARGEST / (size / particles.len() as u64)) as usize;
+    if 24 * particles.len() as u64 > LARGEST {
+        let limit = (LARGEST / 24) as usize;
         return Err(IoError::TooMany { what: "particles", given: particles.len(), limit });
     }
     atomic::write(path, |out| write_points_to(out, particles))
@@ -71,6 +70,8 @@ struct Arrays<'a> {
     name: &'static str,
     /// Mode of the primitive.
     mode: u32,
+    /// Diameter of points in m.
+    diameter: Option<f32>,
 }
 
 struct Array<'a> {
@@ -86,7 +87,7 @@ struct Array<'a> {
 
 impl<'a> Arrays<'a> {
     fn of_mesh(mesh: &'a Mesh) -> Self {
-        let mut arrays = Self { list: Vec::new(), name: "surface", mode: TRIANGLES };
+        let mut arrays = Self { list: Vec::new(), name: "surface", mode: TRIANGLES, diameter: None };
         if mesh.is_empty() {
             return arrays;
         }
@@ -109,44 +110,22 @@ impl<'a> Arrays<'a> {
     }
 
     fn of_particles(particles: &'a Particles) -> Self {
-        let Particles { positions, velocities, attributes, .. } = particles;
+        let Particles { positions, velocities, .. } = particles;
         let mut list = Vec::new();
         if !positions.is_empty() {
             list.push(vectors("POSITION", positions, Some(bounds(positions))));
             list.push(vectors("_VELOCITY", velocities, None));
-            let scalars = attributes.iter().filter(|attribute| attribute.components == 1);
-            list.extend(scalars.map(|attribute| Array {
-                name: format!("_{}", attribute.name.to_ascii_uppercase()),
-                data: bytemuck::cast_slice(&attribute.values),
-                count: attribute.values.len(),
-                components: 1,
-                bounds: None,
-            }));
             list.retain(|array| array.count > 0);
         }
-        Self { list, name: "points", mode: POINTS }
+        let width = particles.attributes.iter().find(|attribute| attribute.name == "width");
+        let diameter = width.and_then(|width| width.values.first().copied());
+        Self { list, name: "points", mode: POINTS, diameter }
     }
 
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut json = self.document().to_string().into_bytes();
-        // The size of a chunk is a multiple of four; spaces may follow the JSON.
-        json.resize(json.len().next_multiple_of(4), b' ');
-        let blob = self.bytes();
-        let total = 12 + 8 + json.len() + if blob > 0 { 8 + blob } else { 0 };
-        out.write_all(b"glTF")?;
-        for word in [2, total as u32, json.len() as u32] {
-            out.write_all(&word.to_le_bytes())?;
-        }
-        out.write_all(b"JSON")?;
-        out.write_all(&json)?;
-        if blob > 0 {
-            out.write_all(&(blob as u32).to_le_bytes())?;
-            out.write_all(b"BIN\0")?;
-            for array in &self.list {
-                out.write_all(array.data)?;
-            }
-        }
-        Ok(())
+        write_file(out, &self.document(), self.bytes(), |out| {
+            self.list.iter().try_for_each(|array| out.write_all(array.data))
+        })
     }
 
     fn bytes(&self) -> usize {
@@ -184,12 +163,16 @@ impl<'a> Arrays<'a> {
         if self.mode == TRIANGLES {
             primitive["indices"] = json!(self.list.len() - 1);
         }
+        let mut mesh = json!({ "name": self.name, "primitives": [primitive] });
+        if let Some(diameter) = self.diameter {
+            mesh["extras"] = json!({ "diameter": diameter });
+        }
         json!({
             "asset": asset,
             "scene": 0,
             "scenes": [{ "nodes": [0] }],
             "nodes": [{ "mesh": 0, "name": self.name }],
-            "meshes": [{ "name": self.name, "primitives": [primitive] }],
+            "meshes": [mesh],
             "materials": [{
                 "name": "water",
                 "pbrMetallicRoughness": {
@@ -203,6 +186,31 @@ impl<'a> Arrays<'a> {
             "buffers": [{ "byteLength": offset }],
         })
     }
+}
+
+/// Writes a file: its description, and arrays of this many bytes, a multiple of four.
+pub(super) fn write_file(
+    out: &mut dyn Write,
+    document: &Value,
+    bytes: usize,
+    arrays: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut json = document.to_string().into_bytes();
+    // The size of a chunk is a multiple of four; spaces may follow the JSON.
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let total = 12 + 8 + json.len() + if bytes > 0 { 8 + bytes } else { 0 };
+    out.write_all(b"glTF")?;
+    for word in [2, total as u32, json.len() as u32] {
+        out.write_all(&word.to_le_bytes())?;
+    }
+    out.write_all(b"JSON")?;
+    out.write_all(&json)?;
+    if bytes > 0 {
+        out.write_all(&(bytes as u32).to_le_bytes())?;
+        out.write_all(b"BIN\0")?;
+        arrays(out)?;
+    }
+    Ok(())
 }
 
 /// An array of vectors.
@@ -236,8 +244,8 @@ mod tests {
     }
 
     #[test]
-    fn points_have_velocities_and_widths() {
-        let width = Attribute { name: "width".to_owned(), components: 1, values: vec![0.5, 0.25] };
+    fn points_have_velocities_and_a_diameter() {
+        let width = Attribute { name: "width".to_owned(), components: 1, values: vec![0.5, 0.5] };
         let particles = Particles::from_positions(vec![[0.0, 1.0, 2.0], [-1.0, 3.0, 2.0]])
             .with_velocities(vec![[4.0, 5.0, 6.0], [7.0, 8.0, 9.0]])
             .with_attributes(vec![width]);
@@ -247,12 +255,13 @@ mod tests {
         let primitive = &json["meshes"][0]["primitives"][0];
         assert_eq!(primitive["mode"], 0);
         assert_eq!(primitive.get("indices"), None);
-        assert_eq!(primitive["attributes"], json!({ "POSITION": 0, "_VELOCITY": 1, "_WIDTH": 2 }));
+        assert_eq!(primitive["attributes"], json!({ "POSITION": 0, "_VELOCITY": 1 }));
+        assert_eq!(json["meshes"][0]["extras"]["diameter"], 0.5);
         assert_eq!(json["accessors"][0]["min"], json!([-1.0, 1.0, 2.0]));
-        let shapes: Vec<&Value> = (0..3).map(|i| &json["accessors"][i]["type"]).collect();
-        assert_eq!(shapes, ["VEC3", "VEC3", "SCALAR"]);
-        assert_eq!(arrays.len(), 56);
-        assert_eq!(bytemuck::pod_collect_to_vec::<u8, f32>(&arrays[48..]), [0.5, 0.25]);
+        let shapes: Vec<&Value> = (0..2).map(|i| &json["accessors"][i]["type"]).collect();
+        assert_eq!(shapes, ["VEC3", "VEC3"]);
+        assert_eq!(arrays.len(), 48);
+        assert_eq!(bytemuck::pod_collect_to_vec::<u8, f32>(&arrays[24..36]), [4.0, 5.0, 6.0]);
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Animated files opened by other software.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use splashdown_io::usd::{MeshSeries, PointSeries};
-use splashdown_io::{Mesh, Particles};
+use splashdown_io::stage::{Sample, Stage};
+use splashdown_io::{Mesh, Particles, StageFile};
 
 use crate::common;
 use crate::python::{Sums, close, read, same};
@@ -32,25 +33,25 @@ fn moved(mut mesh: Mesh, by: [f32; 3]) -> Mesh {
 }
 
 fn write_surface(path: &Path, frames: &[Mesh]) {
-    let series = MeshSeries::start(path, RATE).unwrap();
+    let series = StageFile::start(vec![path.to_owned()], Stage::of_surface(RATE), None).unwrap();
     for (frame, mesh) in frames.iter().enumerate() {
-        series.push(frame as u32, mesh).unwrap();
+        series.push(frame as u32, &[(0, Sample::Mesh(Arc::new(mesh.clone())))]).unwrap();
         assert!(!path.exists(), "an unfinished file does not have its final name");
     }
-    let (written, bytes) = series.finish().unwrap().unwrap();
-    assert_eq!((written.as_path(), bytes), (path, std::fs::metadata(path).unwrap().len()));
-    assert_eq!(series.finish().unwrap(), None);
+    let written = series.finish();
+    assert_eq!(written, [Ok((path.to_owned(), std::fs::metadata(path).unwrap().len()))]);
+    assert_eq!(series.finish(), []);
 }
 
 /// A complete file and one with a vertex moved.
 fn surfaces(folder: &Path) -> [PathBuf; 2] {
-    let [right, wrong] = ["right.usda", "wrong.usda"].map(|name| folder.join(name));
+    let [right, wrong] = ["right.usdc", "wrong.usdc"].map(|name| folder.join(name));
     write_surface(&right, &frames());
     let mut changed = frames();
     changed[1].vertices[5][1] += 1e-3;
     changed[1].velocities[5][1] += 1.0;
     write_surface(&wrong, &changed);
-    assert_eq!(common::names(folder), ["right.usda", "wrong.usda"], "no hidden file remains");
+    assert_eq!(common::names(folder), ["right.usdc", "wrong.usdc"], "no hidden file remains");
     [right, wrong]
 }
 
@@ -98,16 +99,16 @@ fn blender_plays_the_animated_surface() {
 #[test]
 fn pixars_library_opens_animated_particles() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("particles.usda");
-    let series = PointSeries::start(&path, RATE, 0.05).unwrap();
+    let path = folder.path().join("particles.usdc");
+    let series = StageFile::start(vec![path.clone()], Stage::of_particles(RATE, 0.05), None).unwrap();
     let mut frames = [common::particles(50), common::particles(40)];
     // NaN and infinity must not make the file unreadable.
     frames[1].pressures[3] = f32::NAN;
     frames[1].velocities[3][0] = f32::NEG_INFINITY;
     for (frame, particles) in frames.iter().enumerate() {
-        series.push(frame as u32 + 7, particles).unwrap();
+        series.push(frame as u32 + 7, &[(0, Sample::Points(Arc::new(particles.clone())))]).unwrap();
     }
-    series.finish().unwrap().unwrap();
+    assert!(series.finish()[0].is_ok());
     let Some(found) = read("pixars_library_opens_animated_particles", "usd", &[&path]) else { return };
     let Particles { ids, positions, velocities, densities, .. } = &frames[0];
     same(&found[0], "points@7", &Sums::vectors(positions));
@@ -121,10 +122,11 @@ fn pixars_library_opens_animated_particles() {
 #[test]
 fn a_dropped_series_leaves_no_files() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("surface.usda");
-    let series = MeshSeries::start(&path, RATE).unwrap();
-    series.push(0, &frames()[0]).unwrap();
+    let path = folder.path().join("surface.usdc");
+    let start = || StageFile::start(vec![path.clone()], Stage::of_surface(RATE), None).unwrap();
+    let series = start();
+    series.push(0, &[(0, Sample::Mesh(Arc::new(frames()[0].clone())))]).unwrap();
     drop(series);
-    assert_eq!(MeshSeries::start(&path, RATE).unwrap().finish().unwrap(), None);
+    assert_eq!(start().finish(), []);
     assert!(common::names(folder.path()).is_empty());
 }

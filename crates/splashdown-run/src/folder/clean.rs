@@ -38,12 +38,11 @@ impl RunFolder {
     pub(crate) fn files_up_to(&self, frame: u32) -> Vec<WrittenFile> {
         let numbered = numbered::ALL.iter().flat_map(|series| series.files(&self.root));
         let numbered = numbered.filter(|(number, _)| *number <= frame).map(|(_, path)| path);
-        let animated = numbered::ANIMATED.stems.iter().map(|stem| self.animated_file(stem, None));
         let existing = |path: std::path::PathBuf| {
             let bytes = fs::metadata(&path).ok()?.len();
             Some(WrittenFile { path, bytes })
         };
-        numbered.chain(animated).filter_map(existing).collect()
+        numbered.chain(self.animated_files()).filter_map(existing).collect()
     }
 
     /// Removes the files of an earlier run, if the folder contains its report. Other files remain. Without this, the
@@ -62,7 +61,7 @@ impl RunFolder {
             // Succeeds only if the folder is empty.
             let _ = fs::remove_dir(self.root.join(series.folder));
         }
-        for part in self.usd_parts() {
+        for part in self.scene_parts() {
             remove(&part);
         }
         let _ = fs::remove_dir(self.checkpoint_folder());
@@ -78,8 +77,8 @@ impl RunFolder {
         for (kind, ..) in PictureKind::ALL {
             remove(&self.film(*kind));
         }
-        for stem in numbered::ANIMATED.stems {
-            remove(&self.animated_file(stem, None));
+        for path in self.animated_files() {
+            remove(&path);
         }
         files
     }

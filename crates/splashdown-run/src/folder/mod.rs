@@ -6,14 +6,14 @@ mod numbered;
 
 pub(crate) use clean::remove_partial;
 pub(crate) use create::Subfolders;
-pub(crate) use numbered::{DROPLET_SERIES, DROPLETS, MESHES, PARTICLES};
+pub(crate) use numbered::{DROPLET_SERIES, DROPLETS, MESHES, PARTICLES, PARTICLES_FILE, SCENE_FILE};
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use splashdown::Checkpoint;
 use splashdown::scene::{Choice, Format, PictureKind};
-use splashdown_io::usd;
+use splashdown_io::PART_ENDING;
 
 use numbered::{CHECKPOINT, CHECKPOINTS, frame_number};
 
@@ -91,41 +91,46 @@ impl RunFolder {
         self.root.join(format!("{}.mp4", kind.name()))
     }
 
-    /// The USD file of the surface or the particles, of the frames from `first` on, or of all frames.
-    pub fn animated(&self, kind: PictureKind, first: Option<u32>) -> PathBuf {
-        self.animated_file(kind.name(), first)
-    }
-
-    /// As [`animated`](Self::animated), for a file of this stem, such as `droplets`.
-    pub fn animated_file(&self, stem: &str, first: Option<u32>) -> PathBuf {
+    /// A file with all frames, or those from `first` on: `scene` or `particles`, with an ending without a dot.
+    pub fn animated_file(&self, stem: &str, first: Option<u32>, ending: &str) -> PathBuf {
         match first {
-            Some(frame) => self.numbered("", stem, frame, Format::Usd.ending()),
-            None => self.root.join(format!("{stem}.{}", Format::Usd.ending())),
+            Some(frame) => self.numbered("", stem, frame, ending),
+            None => self.root.join(format!("{stem}.{ending}")),
         }
     }
 
-    /// The USD file that a run resumed after a frame continues: the last one that begins before.
-    pub(crate) fn animated_at(&self, stem: &str, last: u32) -> PathBuf {
-        let files = numbered::ANIMATED.files(&self.root).map(|(number, path)| (number, file_name(&path)));
-        let parts = self.usd_parts().into_iter().map(|path| file_name(&path)).filter_map(|name| {
-            // `surface_0006_points.usdpart` belongs to `surface_0006.usda`.
-            let (stem, _) = name.rsplit_once('_')?;
-            Some((stem.rsplit_once('_')?.1.parse().ok()?, name))
-        });
-        let first = files.chain(parts).filter(|(first, name)| *first <= last && name.starts_with(stem));
-        self.animated_file(stem, first.map(|(first, _)| first).max())
+    /// The complete files with all frames.
+    pub(crate) fn animated_files(&self) -> impl Iterator<Item = PathBuf> {
+        let endings =
+            Format::ALL.iter().filter(|(format, ..)| format.has_scene()).map(|(format, ..)| format.ending());
+        let stems = numbered::ANIMATED.stems.iter();
+        endings.flat_map(move |ending| stems.clone().map(move |stem| self.animated_file(stem, None, ending)))
     }
 
-    /// The data of USD files that are not complete yet.
-    pub(crate) fn usd_parts(&self) -> Vec<PathBuf> {
+    /// The first frame of the file that a run resumed after a frame continues: the last one that begins before. `None` is
+    /// the file with all frames.
+    pub(crate) fn animated_at(&self, stem: &str, last: u32) -> Option<u32> {
+        let files = numbered::ANIMATED.files(&self.root);
+        let parts = self.scene_parts().into_iter().filter_map(|path| {
+            // The data of `scene_0006.usdc` is `scene_0006.scenepart`.
+            let number = path.file_stem()?.to_str()?.rsplit_once('_')?.1.parse().ok()?;
+            Some((number, path))
+        });
+        let own =
+            files.chain(parts).filter(|(first, path)| *first <= last && file_name(path).starts_with(stem));
+        own.map(|(first, _)| first).max()
+    }
+
+    /// The data of files with all frames that are not complete yet.
+    pub(crate) fn scene_parts(&self) -> Vec<PathBuf> {
         let entries = fs::read_dir(self.checkpoint_folder()).into_iter().flatten().flatten();
         let files = entries.map(|entry| entry.path());
-        files.filter(|path| path.extension().is_some_and(|ending| ending == usd::PART_ENDING)).collect()
+        files.filter(|path| path.extension().is_some_and(|ending| ending == PART_ENDING)).collect()
     }
 
     /// Whether there is such data of this file.
-    pub(crate) fn has_usd_parts(&self, stem: &str) -> bool {
-        self.usd_parts().iter().any(|path| file_name(path).starts_with(stem))
+    pub(crate) fn has_scene_part(&self, stem: &str) -> bool {
+        self.scene_parts().iter().any(|path| file_name(path).starts_with(stem))
     }
 
     /// The ParaView index of the VTU particles.

@@ -45,11 +45,15 @@ pub const DROPLET_SERIES: Series = Series {
 };
 pub const PICTURES: Series =
     Series { folder: "pictures", stems: &["surface", "particles"], has_ending: |ending| ending == "png" };
-/// USD files of resumed runs, numbered by their first frame.
+/// The stem of the files with the whole scene and all frames.
+pub const SCENE_FILE: &str = "scene";
+/// The stem of the file with the particles of all frames.
+pub const PARTICLES_FILE: &str = "particles";
+/// Such files of resumed runs, numbered by their first frame.
 pub const ANIMATED: Series = Series {
     folder: "",
-    stems: &["surface", "particles", DROPLETS, "spray", "foam", "bubbles"],
-    has_ending: |ending| is_format(ending, Format::is_series),
+    stems: &[SCENE_FILE, PARTICLES_FILE],
+    has_ending: |ending| ending == "glb" || is_format(ending, Format::is_series),
 };
 const CHECKPOINT_SERIES: Series =
     Series { folder: CHECKPOINTS, stems: &[CHECKPOINT], has_ending: |ending| ending == Checkpoint::ENDING };

@@ -1,44 +1,25 @@
-//! The USD files of a run, which contain all of its frames.
+//! The files of a run that contain all of its frames: the scene as USD and GLB, and the particles as USD.
 
-use std::path::Path;
+mod stage;
+
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use splashdown::foam::DiffuseKind;
+use splashdown::BodyMesh;
 use splashdown::run::Frame;
 use splashdown::scene::{Format, Scene};
-use splashdown::surface::droplet_radius;
-use splashdown_io::usd::{MeshSeries, PointSeries};
-use splashdown_io::{IoError, Job, Particles, WrittenFile};
+use splashdown_io::{IoError, Job, Particles, StageFile, WrittenFile};
 
 use crate::RunFolder;
-use crate::folder::DROPLETS;
+use crate::folder::{PARTICLES_FILE, SCENE_FILE};
+use stage::{Content, Layout};
 
-/// The stems of the files of particles and surface.
-const PARTICLES: &str = "particles";
-const SURFACE: &str = "surface";
-
-/// The USD files in progress.
-#[derive(Debug, Default)]
+/// The files in progress.
+#[derive(Debug)]
 pub struct Animated {
-    /// Particles, droplets and diffuse particles, by the stem of the file.
-    points: Vec<(&'static str, Arc<PointSeries>)>,
-    surface: Option<Arc<MeshSeries>>,
+    files: Vec<(Layout, Arc<StageFile>)>,
     /// Whether frames are added. If not, the files of an interrupted run are only completed.
     grows: bool,
-}
-
-/// The points that a scene can have: the stem of their file, their diameter in m, and whether the scene has them.
-fn all_points(scene: &Scene) -> Vec<(&'static str, f32, bool)> {
-    let spacing = scene.fluid.particle_spacing;
-    let droplets = (DROPLETS, 2.0 * droplet_radius(spacing), scene.surface.separates());
-    // As in pictures.
-    let diameter = |kind| match kind {
-        DiffuseKind::Spray => 0.26 * spacing,
-        DiffuseKind::Foam => 0.5 * spacing,
-        DiffuseKind::Bubble => 0.32 * spacing,
-    };
-    let diffuse = DiffuseKind::ALL.map(|(kind, name)| (name, diameter(kind), scene.foam.enabled));
-    [(PARTICLES, spacing, true), droplets].into_iter().chain(diffuse).collect()
 }
 
 impl Animated {
@@ -50,51 +31,44 @@ impl Animated {
     pub fn start(
         folder: &RunFolder,
         scene: &Scene,
+        bodies: &[BodyMesh],
         resumed_after: Option<u32>,
         keep: bool,
     ) -> Result<Self, IoError> {
-        let grows = scene.output.formats.contains(&Format::Usd);
-        let rate = f64::from(scene.frame_rate);
+        let requested = &scene.output.formats;
+        let grows = requested.iter().any(|format| matches!(format, Format::Usd | Format::Glb));
         let checkpoints = folder.checkpoint_folder();
-        let keep = (keep || !folder.usd_parts().is_empty()).then_some(checkpoints.as_path());
-        let mut animated = Self { points: Vec::new(), surface: None, grows };
+        let keep = (keep || !folder.scene_parts().is_empty()).then_some(checkpoints.as_path());
         let first = resumed_after.map(|frame| frame + 1);
-        let new = |stem: &str| folder.animated_file(stem, first);
-        // Without new frames only data that is not yet in a complete file is of interest.
-        let resumes = |stem, has: bool| if grows { has } else { folder.has_usd_parts(stem) };
-        for (stem, diameter, has) in all_points(scene) {
-            let mut series = None;
-            if let Some(last) = resumed_after.filter(|_| resumes(stem, has)) {
-                let path = folder.animated_at(stem, last);
-                series = PointSeries::resume(&path, rate, diameter, keep, last)?;
+        let mut files = Vec::new();
+        for (stem, layout) in
+            [(SCENE_FILE, Layout::scene(scene, bodies)), (PARTICLES_FILE, Layout::particles(scene))]
+        {
+            let Some(layout) = layout else { continue };
+            let formats: Vec<Format> = match (grows, stem) {
+                (true, SCENE_FILE) => requested.iter().filter(|format| format.has_scene()).copied().collect(),
+                (true, _) => requested.iter().filter(|&&format| format == Format::Usd).copied().collect(),
+                // Without new frames only data that is not yet in a complete file is of interest.
+                (false, _) if folder.has_scene_part(stem) => vec![Format::Usd],
+                (false, _) => Vec::new(),
+            };
+            if formats.is_empty() {
+                continue;
             }
-            if series.is_none() && grows && has {
-                series = Some(PointSeries::start_in(&new(stem), rate, diameter, keep)?);
+            let paths = |first| -> Vec<PathBuf> {
+                formats.iter().map(|format| folder.animated_file(stem, first, format.ending())).collect()
+            };
+            let mut file = None;
+            if let Some(last) = resumed_after {
+                let paths = paths(folder.animated_at(stem, last));
+                file = StageFile::resume(paths, layout.stage.clone(), keep, last)?;
             }
-            animated.points.extend(series.map(|series| (stem, Arc::new(series))));
+            if file.is_none() && grows {
+                file = Some(StageFile::start(paths(first), layout.stage.clone(), keep)?);
+            }
+            files.extend(file.map(|file| (layout, Arc::new(file))));
         }
-        animated.start_surface(folder, scene, resumed_after, (&new(SURFACE), keep))?;
-        Ok(animated)
-    }
-
-    fn start_surface(
-        &mut self,
-        folder: &RunFolder,
-        scene: &Scene,
-        resumed_after: Option<u32>,
-        (new, keep): (&Path, Option<&Path>),
-    ) -> Result<(), IoError> {
-        let rate = f64::from(scene.frame_rate);
-        let has = scene.surface.enabled;
-        let resumes = if self.grows { has } else { folder.has_usd_parts(SURFACE) };
-        if let Some(last) = resumed_after.filter(|_| resumes) {
-            let path = folder.animated_at(SURFACE, last);
-            self.surface = MeshSeries::resume(&path, rate, keep, last)?.map(Arc::new);
-        }
-        if self.surface.is_none() && self.grows && has {
-            self.surface = Some(Arc::new(MeshSeries::start_in(new, rate, keep)?));
-        }
-        Ok(())
+        Ok(Self { files, grows })
     }
 
     /// Adds a frame with its droplets and diffuse particles.
@@ -102,25 +76,16 @@ impl Animated {
         if !self.grows {
             return Vec::new();
         }
-        let mut jobs = Vec::new();
-        for (stem, series) in &self.points {
-            let particles = match points.iter().find(|(other, _)| other == stem) {
-                Some((_, particles)) => particles,
-                None if *stem == PARTICLES => &frame.particles,
-                None => continue,
-            };
-            jobs.push(Job::UsdPoints(Arc::clone(series), frame.index, Arc::clone(particles)));
-        }
-        if let (Some(surface), Some(mesh)) = (&self.surface, &frame.mesh) {
-            jobs.push(Job::UsdMesh(Arc::clone(surface), frame.index, Arc::clone(mesh)));
-        }
-        jobs
+        let content = Content { frame, points };
+        let job = |(layout, file): &(Layout, Arc<StageFile>)| {
+            Job::Stage(Arc::clone(file), frame.index, layout.samples(&content))
+        };
+        self.files.iter().map(job).collect()
     }
 
     /// Flushes the frames so far to the disk.
     pub fn sync_jobs(&self) -> Vec<Job> {
-        let points = self.points.iter().map(|(_, points)| Job::SyncPoints(Arc::clone(points)));
-        points.chain(self.surface.iter().map(|surface| Job::SyncMesh(Arc::clone(surface)))).collect()
+        self.files.iter().map(|(_, file)| Job::SyncStage(Arc::clone(file))).collect()
     }
 
     /// Flushes the frames to the disk at once.
@@ -128,15 +93,12 @@ impl Animated {
     /// # Errors
     /// [`IoError::Write`].
     pub fn sync(&self) -> Result<(), IoError> {
-        self.points.iter().try_for_each(|(_, points)| points.sync())?;
-        self.surface.as_ref().map_or(Ok(()), |surface| surface.sync())
+        self.files.iter().try_for_each(|(_, file)| file.sync())
     }
 
     /// Writes the files.
     pub fn finish(self) -> Vec<Result<WrittenFile, IoError>> {
-        let points = self.points.into_iter().map(|(_, points)| points.finish());
-        let ends = points.chain(self.surface.map(|surface| surface.finish()));
-        let files = ends.filter_map(Result::transpose);
+        let files = self.files.into_iter().flat_map(|(_, file)| file.finish());
         files.map(|file| file.map(|(path, bytes)| WrittenFile { path, bytes })).collect()
     }
 }

@@ -7,10 +7,10 @@ mod tracker;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use splashdown::Stats;
 use splashdown::foam::DiffuseKind;
 use splashdown::run::Frame;
 use splashdown::scene::{Format, Scene};
+use splashdown::{BodyMesh, Stats};
 use splashdown_io::Particles;
 use splashdown_io::{FrameWriter, IoError, Job, WrittenFile};
 
@@ -75,18 +75,19 @@ pub(crate) struct FrameFiles {
 }
 
 impl FrameFiles {
-    /// Starts the writer. `keep`: whether an interrupted run is to continue its USD files.
+    /// Starts the writer. `keep`: whether an interrupted run is to continue its files of all frames.
     ///
     /// # Errors
-    /// [`IoError::WriterStopped`]; [`IoError::Write`] if a USD file cannot be created.
+    /// [`IoError::WriterStopped`]; [`IoError::Write`] if a file cannot be created.
     pub fn start(
         folder: RunFolder,
         scene: &Scene,
+        bodies: &[BodyMesh],
         resumed_after: Option<u32>,
         keep: bool,
     ) -> Result<Self, IoError> {
         let formats = scene.output.formats.clone();
-        let animated = Animated::start(&folder, scene, resumed_after, keep)?;
+        let animated = Animated::start(&folder, scene, bodies, resumed_after, keep)?;
         let indexed = formats.contains(&Format::Vtu);
         let mut tracker = Tracker::new(folder.clone(), indexed);
         if let Some(last) = resumed_after {
@@ -141,7 +142,7 @@ impl FrameFiles {
         Ok(())
     }
 
-    /// Queues a checkpoint, after the frames of USD files that it relies on.
+    /// Queues a checkpoint, after the frames of the scene files that it relies on.
     ///
     /// # Errors
     /// The first failure of an earlier frame.
@@ -160,7 +161,7 @@ impl FrameFiles {
         self.tracker.take(&self.writer.written(), no_pictures)
     }
 
-    /// Waits until all but the USD files is written. No other owner of the writer may exist any more.
+    /// Waits until all but the files of all frames is written. No other owner of the writer may exist any more.
     pub fn finish(self, no_pictures: bool) -> FinishedFiles {
         let Self { writer, mut tracker, animated, .. } = self;
         let (files, mut failure) = match Arc::into_inner(writer).map(FrameWriter::finish) {
@@ -185,6 +186,6 @@ pub(crate) struct FinishedFiles {
     pub files: Vec<WrittenFile>,
     /// The first failure.
     pub failure: Option<IoError>,
-    /// The USD files, which are still to be completed.
+    /// The files of all frames, which are still to be completed.
     pub animated: Animated,
 }

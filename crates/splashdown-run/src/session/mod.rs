@@ -211,7 +211,7 @@ impl Session {
                 failure.get_or_insert(error);
             }
         }
-        // However the run ended, the frames written so far form complete USD files. They come after the checkpoint, because
+        // However the run ended, the frames written so far form complete scene files. They come after the checkpoint, because
         // they need as much space again as their data.
         for file in ended.animated.finish() {
             match file {

@@ -86,7 +86,7 @@ impl Session {
             remove_partial(folder.root());
         }
         let keep = settings.checkpoint_every.is_some();
-        let files = FrameFiles::start(folder.clone(), &scene, resumed_after, keep)?;
+        let files = FrameFiles::start(folder.clone(), &scene, run.bodies(), resumed_after, keep)?;
         let table_bytes = std::mem::take(&mut notes.table_bytes);
         let mut session = Self {
             run,
@@ -216,7 +216,7 @@ fn is_unfinished(folder: &RunFolder, scene: &Scene, kinds: &[PictureKind], film:
     let can_film = film && scene.output.film;
     let lacks_film = |&kind: &PictureKind| folder.picture(kind, 0).exists() && !folder.film(kind).exists();
     !is_finished(folder)
-        || !folder.usd_parts().is_empty()
+        || !folder.scene_parts().is_empty()
         || (can_film && films::can_encode() && kinds.iter().any(lacks_film))
 }
 

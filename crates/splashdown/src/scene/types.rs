@@ -275,9 +275,9 @@ choices! {
         Npz = "npz",
         /// Binary STL for 3-D printers: the surface.
         Stl = "stl",
-        /// Binary glTF for the web and game engines: the surface.
+        /// Binary glTF for the web and game engines: the surface, and the whole scene with all frames in one file.
         Glb = "glb",
-        /// Animated USD, one file for all frames: particles and the surface.
+        /// Binary USD: the whole scene with all frames in one file, and the particles in another.
         Usd = "usd",
     }
     /// What a run does when the fluid bursts: when the monitor finds values that are meaningless.
@@ -327,7 +327,7 @@ impl Format {
     /// File name extension without the dot.
     pub fn ending(self) -> &'static str {
         match self {
-            Self::Usd => "usda",
+            Self::Usd => "usdc",
             other => other.name(),
         }
     }
@@ -345,6 +345,11 @@ impl Format {
     /// Whether files of this format can contain the surface.
     pub fn has_surface(self) -> bool {
         self.has(splashdown_io::Format::writes_meshes)
+    }
+
+    /// Whether a file of this format can contain the whole scene with all frames.
+    pub fn has_scene(self) -> bool {
+        matches!(self, Self::Usd | Self::Glb)
     }
 
     /// Whether there is one file per frame. Otherwise one file contains all frames.
