@@ -236,6 +236,22 @@ def test_a_run(scene: splashdown.Scene) -> None:
     assert volume is not None and volume == pytest.approx(0.4 * 0.6 * 0.5, rel=0.4)
 
 
+def test_the_probe_of_a_body(scene: splashdown.Scene) -> None:
+    ball = {"name": "ball", "mesh": "sphere", "scale": 0.3, "position": [0.8, 0.8, 0.25]}
+    ball |= {"motion": "dynamic", "density": 500}
+    probe = {"name": "motion", "quantity": "body", "body": "ball"}
+    scene = scene.replace(body=[ball], probe=[probe])
+    simulation = Simulation(scene, device="cpu")
+    simulation.advance(0.02)
+    rows = simulation.take_probes()["motion"]
+    columns = scene.probe_columns["motion"]
+    assert rows.shape[1] == len(columns) == 20 and len(rows) > 0
+    # It falls freely, and the last row is its state.
+    speed = rows[-1][columns.index("velocity y (m/s)")]
+    assert speed == pytest.approx(-9.81 * rows[-1][0], rel=1e-3)
+    assert rows[-1][1:4] == pytest.approx(simulation.bodies[0].position, abs=1e-6)
+
+
 def test_a_resumed_run_has_the_same_bits(scene: splashdown.Scene, tmp_path: Path) -> None:
     whole = list(Run(scene, device="cpu", frames=4, surface=False))
     run = Run(scene, device="cpu", frames=4, surface=False)

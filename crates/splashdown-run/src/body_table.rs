@@ -10,28 +10,7 @@ use splashdown_io::IoError;
 use crate::RunError;
 
 /// The names of the columns.
-pub(crate) const COLUMNS: [&str; 20] = [
-    "time (s)",
-    "position x (m)",
-    "position y (m)",
-    "position z (m)",
-    "orientation x",
-    "orientation y",
-    "orientation z",
-    "orientation w",
-    "velocity x (m/s)",
-    "velocity y (m/s)",
-    "velocity z (m/s)",
-    "angular velocity x (rad/s)",
-    "angular velocity y (rad/s)",
-    "angular velocity z (rad/s)",
-    "force x (N)",
-    "force y (N)",
-    "force z (N)",
-    "torque x (N m)",
-    "torque y (N m)",
-    "torque z (N m)",
-];
+pub(crate) const COLUMNS: [&str; 20] = BodyState::COLUMNS;
 
 /// The row of a state at a time in s.
 pub(crate) fn row(time: f64, state: &BodyState) -> Vec<f64> {

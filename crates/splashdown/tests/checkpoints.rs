@@ -70,6 +70,12 @@ max = [0.3, 0.03, 0.3]
 name = "wall"
 position = [0.0, 0.02, 0.15]
 quantity = "pressure"
+
+[[probe]]
+name = "low"
+quantity = "body"
+body = "low"
+interval = 0.005
 "#;
 
 fn step(simulation: &mut Simulation) -> Result<(Particles, Vec<splashdown::BodyState>), SimulationError> {

@@ -1,9 +1,10 @@
 //! Probes in complete scenes.
 
+use glam::DVec3;
 use splashdown::probes::ProbeRows;
 use splashdown::scene::Scene;
 use splashdown::{Device, Event, Run, RunOptions, Simulation};
-use splashdown_gpu::testing;
+use splashdown_gpu::{Executor, testing};
 
 /// A tank of still water, 0.4 m deep, with a cube of 0.15 m away from the walls.
 const TANK: &str = r#"
@@ -212,5 +213,180 @@ fn no_row_is_lost_in_a_long_frame() {
             most < interval + 0.003 && times.len() as f64 > 0.4 / (interval + 0.001),
             "{name}: {times:?}"
         );
+    }
+}
+
+/// A cube that falls into water and floats, a stone that falls to the floor, and a paddle that a script moves.
+const BODIES: &str = r#"
+    [scene]
+    name = "bodies"
+    duration = 0.4
+    frame_rate = 10
+    [domain]
+    min = [0, 0, 0]
+    max = [0.5, 0.5, 0.4]
+    [fluid]
+    particle_spacing = 0.025
+    [[fluid.block]]
+    position = [0, 0, 0]
+    size = [0.5, 0.2, 0.4]
+    [surface]
+    enabled = false
+    [[body]]
+    name = "cube"
+    mesh = "cube"
+    scale = 0.1
+    position = [0.15, 0.26, 0.2]
+    rotation = [10, 20, 0]
+    motion = "dynamic"
+    density = 500
+    [[body]]
+    name = "stone"
+    mesh = "sphere"
+    scale = 0.1
+    position = [0.35, 0.06, 0.1]
+    motion = "dynamic"
+    density = 3000
+    [[body]]
+    name = "paddle"
+    mesh = "cube"
+    scale = 0.05
+    position = [0.35, 0.15, 0.3]
+    motion = "scripted"
+    move = ["0.03*sin(10*t)", "0", "0"]
+    [[probe]]
+    name = "cube"
+    quantity = "body"
+    body = "cube"
+    interval = 0.02
+    [[probe]]
+    name = "cube_force"
+    quantity = "force"
+    body = "cube"
+    interval = 0.02
+    [[probe]]
+    name = "stone"
+    quantity = "body"
+    body = "stone"
+    interval = 0.005
+    [[probe]]
+    name = "paddle"
+    quantity = "body"
+    body = "paddle"
+    interval = 0.005
+    "#;
+
+const EXPLICIT: &str = "[solver]\nmethod = \"wcsph\"\n";
+
+/// The columns of a body probe after the time.
+const POSITION: usize = 1;
+const ORIENTATION: usize = 4;
+const VELOCITY: usize = 8;
+const FORCE: usize = 14;
+
+/// The simulation of [`BODIES`] after this many frames of 0.1 s, and its rows.
+fn bodies_after(frames: usize, extra: &str, executor: Executor) -> (Simulation, Vec<ProbeRows>) {
+    let scene = Scene::parse(&format!("{BODIES}{extra}"), "bodies.toml").unwrap();
+    let mut simulation = Simulation::with_executor(&scene, executor).unwrap();
+    for _ in 0..frames {
+        simulation.advance(0.1).unwrap();
+    }
+    let rows = simulation.take_probe_rows();
+    (simulation, rows)
+}
+
+fn vector(row: &[f64], first: usize) -> DVec3 {
+    DVec3::from_slice(&row[first..])
+}
+
+/// The largest difference in N s between the changes of momentum of the cube and the impulses of these rows' forces and of
+/// gravity.
+fn lost_impulse(rows: &[Vec<f64>], forces: &[Vec<f64>], gravity: f64) -> f64 {
+    let mass = 500.0 * 0.1_f64.powi(3);
+    let difference = |(pair, force): (&[Vec<f64>], &Vec<f64>)| {
+        let gained = mass * (vector(&pair[1], VELOCITY) - vector(&pair[0], VELOCITY));
+        let total = vector(force, FORCE) - mass * gravity * DVec3::Y;
+        (gained - (pair[1][0] - pair[0][0]) * total).length()
+    };
+    rows.windows(2).zip(forces).map(difference).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_motion_of_a_floating_body_follows_from_the_force_in_its_probe() {
+    for (frames, extra) in [(4, ""), (2, EXPLICIT)] {
+        for (name, executor) in
+            testing::executors("the_motion_of_a_floating_body_follows_from_the_force_in_its_probe")
+        {
+            let (_, rows) = bodies_after(frames, extra, executor);
+            let [cube, force] = [&rows[0], &rows[1]];
+            assert!([cube.len(), force.len()] == [5 * frames; 2], "{name}: {} rows", cube.len());
+            // Both accumulate the same numbers in the same order.
+            assert!(
+                cube.iter().zip(force).all(|(cube, force)| cube[FORCE..] == force[1..]),
+                "{name}: forces"
+            );
+            // Single precision: each of up to forty steps of a row rounds a momentum of 0.5 N s by 3e-8 of it, and the times
+            // of rows are exact to 1e-8 s, at forces below 20 N. The impulse of gravity in a row is 0.1 N s.
+            let lost = lost_impulse(cube, &cube[1..], 9.81);
+            assert!(lost < 1e-6, "{name}: {lost} N s");
+            // Controls: the forces of the previous rows, and a gravity that is wrong by a ten thousandth.
+            let controls = [lost_impulse(cube, cube, 9.81), lost_impulse(cube, &cube[1..], 9.811)];
+            assert!(controls[0] > 1e-3 && controls[1] > 5e-6, "{name}: {controls:?} N s");
+        }
+    }
+}
+
+#[test]
+fn the_last_row_of_a_body_is_its_state_after_contacts() {
+    for (frames, extra) in [(4, ""), (2, EXPLICIT)] {
+        for (name, executor) in testing::executors("the_last_row_of_a_body_is_its_state_after_contacts") {
+            let (mut simulation, rows) = bodies_after(frames, extra, executor);
+            let states = simulation.body_states().unwrap();
+            for (state, rows) in states.iter().zip([&rows[0], &rows[2], &rows[3]]) {
+                let last = rows.last().unwrap();
+                assert!(
+                    (last[0] - 0.1 * frames as f64).abs() < 1e-6,
+                    "{name}: the last row is at {} s",
+                    last[0]
+                );
+                // The same single-precision formula on the device and on the host.
+                let same = |first: usize, values: &[f32]| {
+                    let rows = last[first..].iter();
+                    rows.zip(values).all(|(a, b)| (a - f64::from(*b)).abs() < 1e-6)
+                };
+                assert!(same(POSITION, &state.position.to_array()), "{name}: {last:?} {state:?}");
+                assert!(same(ORIENTATION, &state.orientation.to_array()), "{name}: {last:?} {state:?}");
+                assert!(same(VELOCITY, &state.velocity.to_array()), "{name}: {last:?} {state:?}");
+            }
+            // With an implicit pressure contacts act after every step. The stone rests on the floor. Before the contact acts,
+            // gravity has accelerated it in every step.
+            if extra.is_empty() {
+                let late = rows[2].iter().filter(|row| row[0] > 0.3).map(|row| row[VELOCITY + 1]);
+                let (sum, count) = late.fold((0.0, 0), |(sum, count), speed| (sum + speed, count + 1));
+                let (mean, step) = (sum / f64::from(count), 9.81 * f64::from(simulation.stats().dt));
+                assert!(mean.abs() < 0.2 * step, "{name}: {mean} m/s, gravity in a step {step} m/s");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_rows_of_a_scripted_body_follow_its_script() {
+    for (name, executor) in testing::executors("the_rows_of_a_scripted_body_follow_its_script") {
+        let (_, rows) = bodies_after(4, "", executor);
+        let error = |shift: f64| {
+            let paddle = rows[3].iter();
+            let difference = |row: &Vec<f64>| {
+                let (sine, cosine) = (10.0 * (row[0] + shift)).sin_cos();
+                (row[POSITION] - 0.35 - 0.03 * sine).abs() + (row[VELOCITY] - 0.3 * cosine).abs() / 10.0
+            };
+            paddle.map(difference).fold(0.0, f64::max)
+        };
+        // The motion is interpolated between samples every 1.6 ms.
+        assert!(error(0.0) < 1e-5, "{name}: {}", error(0.0));
+        // Control: the states a tenth of a millisecond later.
+        assert!(error(1e-4) > 2e-5, "{name}: {}", error(1e-4));
+        let pushed = rows[3].iter().map(|row| vector(row, FORCE).length()).fold(0.0, f64::max);
+        assert!(pushed > 0.5, "{name}: the water exerts {pushed} N");
     }
 }

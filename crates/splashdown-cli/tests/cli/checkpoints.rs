@@ -8,12 +8,17 @@ use std::time::{Duration, Instant};
 
 use crate::place::{Outcome, Place, SMALL, TinyDisk, assert_refused, stderr, stdout};
 
-/// The small scene with a probe and a dynamic body, which have state of their own.
+/// The small scene with probes and a dynamic body, which have state of their own.
 const MORE: &str = "
 [[probe]]
 name = \"gauge\"
 quantity = \"pressure\"
 position = [0, 0.05, 0.15]
+
+[[probe]]
+name = \"motion\"
+quantity = \"body\"
+body = \"ball\"
 
 [[body]]
 name = \"ball\"

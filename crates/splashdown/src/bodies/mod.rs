@@ -103,6 +103,30 @@ pub struct BodyState {
 }
 
 impl BodyState {
+    /// The names with units of the columns of a table of states; the first is the time.
+    pub const COLUMNS: [&'static str; 20] = [
+        "time (s)",
+        "position x (m)",
+        "position y (m)",
+        "position z (m)",
+        "orientation x",
+        "orientation y",
+        "orientation z",
+        "orientation w",
+        "velocity x (m/s)",
+        "velocity y (m/s)",
+        "velocity z (m/s)",
+        "angular velocity x (rad/s)",
+        "angular velocity y (rad/s)",
+        "angular velocity z (rad/s)",
+        "force x (N)",
+        "force y (N)",
+        "force z (N)",
+        "torque x (N m)",
+        "torque y (N m)",
+        "torque z (N m)",
+    ];
+
     /// A body at rest without forces, with its mesh's origin at a position in m.
     pub fn at(position: Vec3, orientation: Quat) -> Self {
         let [velocity, angular_velocity, force, torque] = [Vec3::ZERO; 4];
@@ -256,7 +280,7 @@ impl Bodies {
         self.rigid.is_some()
     }
 
-    /// Resolves the collisions of the last `seconds`.
+    /// Resolves the collisions of the last `seconds`. Returns the states if collisions have changed them.
     ///
     /// # Errors
     /// If the device was lost.
@@ -264,13 +288,14 @@ impl Bodies {
         &mut self,
         executor: &mut Executor,
         seconds: f32,
-    ) -> Result<(), GpuError> {
-        let Some(rigid) = &mut self.rigid else { return Ok(()) };
+    ) -> Result<Option<Vec<Body>>, GpuError> {
+        let Some(rigid) = &mut self.rigid else { return Ok(None) };
         let mut states = executor.fetch(self.bodies).await?;
-        if rigid.resolve(&mut states, seconds) {
-            executor.write(self.bodies, &states)?;
+        if !rigid.resolve(&mut states, seconds) {
+            return Ok(None);
         }
-        Ok(())
+        executor.write(self.bodies, &states)?;
+        Ok(Some(states))
     }
 
     /// Sets the positions and velocities of bodies; `None` leaves a body unchanged.
@@ -423,7 +448,8 @@ impl Bodies {
     }
 }
 
-fn state_of(body: &Body) -> BodyState {
+/// The state of the origin of a body's mesh.
+pub(crate) fn state_of(body: &Body) -> BodyState {
     let orientation = body.rotation();
     let arm = orientation * -body.center;
     BodyState {

@@ -1,8 +1,9 @@
 //! Probes: measurements during a simulation, like those of gauges in a laboratory.
 //!
 //! *How it works.* In every step the device evaluates each probe (`sample`, `flux`) and accumulates the values. When a
-//! row is due it writes their mean since the previous row (`accumulate`). The host fetches the rows once per frame. The
-//! volume of a particle is spacing^3. Its mass is slightly less than the rest density times this volume, because the sum
+//! row is due it writes their mean since the previous row (`accumulate`), and the pose of a body at this time. The host
+//! fetches the rows once per frame. Where it resolves contacts after a step that has written the pose of a body, it corrects
+//! the row. The volume of a particle is spacing^3. Its mass is slightly less than the rest density times this volume, because the sum
 //! of the kernel over a lattice exceeds one.
 
 mod accumulate;
@@ -13,12 +14,12 @@ mod types;
 
 pub(crate) use fluid::FluidProbes;
 #[doc(hidden)]
-pub use types::{Account, PROBE, ProbePoint, ROW, VALUES};
+pub use types::{Account, POSE, PROBE, ProbePoint, ROW, VALUES};
 
 use glam::Vec3;
 use splashdown_gpu::{Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc};
 
-use crate::bodies::{Bodies, Body};
+use crate::bodies::{Bodies, Body, BodyState, state_of};
 use crate::coupling::{Coupling, Stage, StepRecorder};
 use crate::scene::{Domain, Probe, Quantity, Scene};
 
@@ -31,8 +32,8 @@ pub fn passes() -> Vec<&'static PassDesc> {
     vec![&sample::SAMPLE, &flux::FLUX, &accumulate::ACCUMULATE]
 }
 
-/// The rows of a probe: each is the time in s at its end, then the mean values since the previous row. [`columns`]
-/// names the values.
+/// The rows of a probe: each is the time in s at its end, then the mean values since the previous row. Poses and velocities
+/// of bodies are those at the time of the row. [`columns`] names the values.
 pub type ProbeRows = Vec<Vec<f64>>;
 
 /// The names of a probe's columns with units; the first is the time.
@@ -49,6 +50,7 @@ pub fn columns(probe: &Probe) -> &'static [&'static str] {
             "torque y (N m)",
             "torque z (N m)",
         ],
+        Quantity::Body(_) => &BodyState::COLUMNS,
         Quantity::Flow { .. } => &["time (s)", "flow (m^3/s)"],
         Quantity::Fluid { .. } => fluid::COLUMNS,
         Quantity::Energy => fluid::BALANCE,
@@ -127,6 +129,34 @@ impl Probes {
         Ok(())
     }
 
+    /// Replaces the poses in the rows that the last step has written by those of these states, because contacts have changed
+    /// the bodies after this step.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub(crate) async fn correct_poses(
+        &self,
+        executor: &mut Executor,
+        states: &[Body],
+    ) -> Result<(), GpuError> {
+        if !self.points.iter().any(|point| point.kind == ProbePoint::BODY) {
+            return Ok(());
+        }
+        let accounts = executor.fetch(self.accounts).await?;
+        let mut rows = executor.fetch(self.rows).await?;
+        let mut is_corrected = false;
+        for (point, account) in self.points.iter().zip(accounts.chunks_exact(Account::WORDS)) {
+            let written = account[Account::ROWS] as usize;
+            // No time has passed since a row of the last step.
+            if point.kind == ProbePoint::BODY && written > 0 && account[Account::TIME] == 0 {
+                let at = (point.first_row as usize + written - 1) * ROW;
+                rows[at + 1..][..POSE].copy_from_slice(&pose_of(&states[point.body as usize]));
+                is_corrected = true;
+            }
+        }
+        if is_corrected { executor.write(self.rows, &rows) } else { Ok(()) }
+    }
+
     /// The buffers of the probes' state from step to step.
     pub(crate) fn memory(&self) -> [Buffer<u32>; 2] {
         [self.accounts, self.counts]
@@ -163,6 +193,15 @@ impl Probes {
         executor.write(self.accounts, &accounts)?;
         Ok(taken)
     }
+}
+
+/// The pose of a body in a row: position, orientation, velocity and angular velocity of the mesh's origin.
+fn pose_of(body: &Body) -> [f32; POSE] {
+    let state = state_of(body);
+    let [[x, y, z], [u, v, w], [a, b, c]] =
+        [state.position, state.velocity, state.angular_velocity].map(|vector| vector.to_array());
+    let [i, j, k, r] = state.orientation.to_array();
+    [x, y, z, i, j, k, r, u, v, w, a, b, c]
 }
 
 /// Gives each probe its part of the rows, for frames of up to this many seconds. Returns the number of all rows, which may
@@ -228,8 +267,9 @@ fn point_of(probe: &Probe, scene: &Scene) -> ProbePoint {
             point.position = off_walls(scene, *foot, point.normal);
             point.half_along = distance_to_side(scene, point.position, point.normal);
         }
-        Quantity::Force(name) => {
-            point.kind = ProbePoint::FORCE;
+        Quantity::Force(name) | Quantity::Body(name) => {
+            let is_force = matches!(probe.quantity, Quantity::Force(_));
+            point.kind = if is_force { ProbePoint::FORCE } else { ProbePoint::BODY };
             let place = scene.bodies.iter().position(|body| body.name == *name);
             point.body = place.unwrap_or_default() as u32;
         }

@@ -11,8 +11,8 @@ gpu_struct! {
     pub struct ProbePoint {
         /// Position in m: of a point, of the base of a column, or of the centre of a rectangle.
         position: Vec3,
-        /// [`ProbePoint::PRESSURE`], [`ProbePoint::HEIGHT`], [`ProbePoint::FORCE`], [`ProbePoint::FLOW`] or
-        /// [`ProbePoint::FLUID`].
+        /// [`ProbePoint::PRESSURE`], [`ProbePoint::HEIGHT`], [`ProbePoint::FORCE`], [`ProbePoint::FLOW`],
+        /// [`ProbePoint::FLUID`] or [`ProbePoint::BODY`].
         kind: u32,
         /// Unit vector: the normal of a rectangle, the direction of a column.
         normal: Vec3,
@@ -48,6 +48,18 @@ impl ProbePoint {
     pub const FLOW: u32 = 3;
     /// Sums over the fluid, which the host computes.
     pub const FLUID: u32 = 4;
+    /// Pose and velocity of a body, and force and torque on it.
+    pub const BODY: u32 = 5;
+
+    /// True if its values are the force and the torque on a body.
+    pub fn has_force(&self) -> bool {
+        matches!(self.kind, Self::FORCE | Self::BODY)
+    }
+
+    /// Floats between the time and the mean values in its rows: [`POSE`] of a body.
+    pub fn pose_length(&self) -> usize {
+        if self.kind == Self::BODY { POSE } else { 0 }
+    }
 }
 
 /// The words of a probe in the buffer of accounts, which accumulates values since the last row.
@@ -66,7 +78,9 @@ impl Account {
     pub const WORDS: usize = Self::SUMS + VALUES;
 }
 
-/// The largest number of values of a probe: those of a force and a torque.
+/// The largest number of values of a probe of which the mean is written: those of a force and a torque.
 pub const VALUES: usize = 6;
-/// Floats per row: the time since the beginning of the frame in s, then the values.
-pub const ROW: usize = 1 + VALUES;
+/// Floats of a pose: position, quaternion x, y, z, w, velocity and angular velocity.
+pub const POSE: usize = 13;
+/// Floats per row: the time since the beginning of the frame in s, the pose if the probe has one, then the mean values.
+pub const ROW: usize = 1 + POSE + VALUES;

@@ -223,6 +223,9 @@ pub enum Quantity {
     Height(Vec3),
     /// Force in N and torque in N m (about the centre of mass) of the fluid on the body of this name.
     Force(String),
+    /// Pose and velocity of the body of this name at the time of a row, and force and torque as
+    /// [`Force`](Self::Force).
+    Body(String),
     /// Volume flow in m^3/s through a rectangle, positive along its normal.
     Flow {
         /// Its centre in m.

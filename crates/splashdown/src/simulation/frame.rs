@@ -6,6 +6,7 @@ use splashdown_gpu::{Executor, Readback, block_on};
 use super::Simulation;
 use super::phases::HostAction;
 use crate::bodies::Bodies;
+use crate::probes::Probes;
 use crate::scene::{Derived, Scene};
 use crate::state::{DEAD_NON_FINITE, StepCounters, StepState};
 use crate::{SimulationError, Stats};
@@ -116,7 +117,8 @@ impl Simulation {
             // The action after the last submission waits for the state that is read below.
             if let Some(action) = action {
                 let left = self.executor.fetch(self.fields.state).await?[0].remaining;
-                act(action, &mut self.bodies, &mut self.executor, state_before - left).await?;
+                act(action, &mut self.bodies, self.probes.as_ref(), &mut self.executor, state_before - left)
+                    .await?;
                 state_before = left;
             }
             self.executor.run(submission.recording())?;
@@ -136,7 +138,7 @@ impl Simulation {
             self.stable_dt = state.stable_dt;
             if let Some(action) = action {
                 let passed = state_before - state.remaining;
-                act(action, &mut self.bodies, &mut self.executor, passed).await?;
+                act(action, &mut self.bodies, self.probes.as_ref(), &mut self.executor, passed).await?;
             }
             frame.state = Some(state);
             // With a step below `min_dt` the frame might never end.
@@ -232,13 +234,18 @@ impl Simulation {
 async fn act(
     action: HostAction,
     bodies: &mut Option<Bodies>,
+    probes: Option<&Probes>,
     executor: &mut Executor,
     seconds: f32,
 ) -> Result<(), SimulationError> {
     match action {
-        HostAction::ResolveCollisions => match bodies {
-            Some(bodies) => Ok(bodies.resolve_collisions(executor, seconds).await?),
-            None => Ok(()),
-        },
+        HostAction::ResolveCollisions => {
+            let Some(bodies) = bodies else { return Ok(()) };
+            let changed = bodies.resolve_collisions(executor, seconds).await?;
+            if let (Some(states), Some(probes)) = (changed, probes) {
+                probes.correct_poses(executor, &states).await?;
+            }
+            Ok(())
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles};
 use splashdown::bodies::Body;
-use splashdown::probes::{Account, ProbePoint, ROW, VALUES};
+use splashdown::probes::{Account, POSE, ProbePoint, ROW, VALUES};
 use splashdown_gpu::{DispatchSize, bytemuck, testing};
 
 use super::harness::{Case, Data, close, exact, wide};
@@ -15,8 +15,8 @@ pub fn cases() -> Vec<Case> {
     vec![sample(), flux(), accumulate()]
 }
 
-/// A point in the fluid, one in a corner, one far above the fluid; a vertical and a tilted column; a body; two
-/// rectangles.
+/// A point in the fluid, one in a corner, one far above the fluid; a vertical and a tilted column; the force on a body;
+/// two rectangles; the state of a body.
 fn probes() -> Vec<ProbePoint> {
     let none: ProbePoint = bytemuck::Zeroable::zeroed();
     let lean = Vec3::new(0.48, 0.8, -0.36);
@@ -41,6 +41,7 @@ fn probes() -> Vec<ProbePoint> {
         ProbePoint { kind: ProbePoint::FORCE, body: 1, ..none },
         flow,
         ProbePoint { normal: -normal, half_along: 0.1, ..flow },
+        ProbePoint { kind: ProbePoint::BODY, body: 1, ..none },
     ]
 }
 
@@ -134,7 +135,7 @@ fn flux() -> Case {
     let mut crossed = [0; 2];
     for (before, after) in world.positions.iter().zip(&moved).take(world.active()) {
         let [a, b] = [before, after].map(|p| p.xyz().as_dvec3());
-        for (k, probe) in probes.iter().enumerate().skip(6) {
+        for (k, probe) in probes.iter().enumerate().skip(6).take(2) {
             let [center, normal] = [probe.position, probe.normal].map(|v| v.as_dvec3());
             let [above, below] = [a, b].map(|x| (x - center).dot(normal));
             if (above < 0.0) == (below < 0.0) {
@@ -177,12 +178,33 @@ fn accumulate() -> Case {
     let state = world.state;
     let elapsed = state.frame_duration - state.remaining + state.dt;
     let mut probes = probes();
-    // Due: the first, one within half a step, the force, a flow. Not due: one by more than half a step. Full: the
-    // fourth.
-    let next =
-        [elapsed - 0.001, elapsed + 0.4 * state.dt, elapsed + 0.6 * state.dt, 0.0, 1.0, 0.0, elapsed, 1.0];
+    // Due: the first, one within half a step, the force, a flow, the state of a body. Not due: one by more than half a
+    // step. Full: the fourth.
+    let next = [
+        elapsed - 0.001,
+        elapsed + 0.4 * state.dt,
+        elapsed + 0.6 * state.dt,
+        0.0,
+        1.0,
+        0.0,
+        elapsed,
+        1.0,
+        elapsed,
+    ];
     let none: Body = bytemuck::Zeroable::zeroed();
-    let pushed = Body { force: Vec3::new(3.0, -40.0, 0.5), torque: Vec3::new(0.25, 6.0, -2.0), ..none };
+    // A turn of 120 degrees about the diagonal maps x to y, y to z and z to x.
+    let pushed = Body {
+        force: Vec3::new(3.0, -40.0, 0.5),
+        torque: Vec3::new(0.25, 6.0, -2.0),
+        position: Vec3::new(1.0, 2.0, 4.0),
+        orientation: Vec4::splat(0.5),
+        velocity: Vec3::new(0.5, -1.0, 3.0),
+        angular_velocity: Vec3::new(0.0, 0.0, 2.0),
+        center: Vec3::new(0.25, 0.5, 0.125),
+        ..none
+    };
+    // The origin of the mesh is at -(0.125, 0.25, 0.5) from the centre.
+    let pose = [0.875, 1.75, 3.5, 0.5, 0.5, 0.5, 0.5, 1.0, -1.25, 3.0, 0.0, 0.0, 2.0];
     let mut accounts = Vec::new();
     let mut first_row = 1;
     for (k, probe) in probes.iter_mut().enumerate() {
@@ -207,7 +229,7 @@ fn accumulate() -> Case {
         account[Account::TIME] += dt;
         let sums = &mut account[Account::SUMS..];
         match probes[k].kind {
-            ProbePoint::FORCE => {
+            ProbePoint::FORCE | ProbePoint::BODY => {
                 for (a, value) in [pushed.force, pushed.torque].iter().flat_map(|v| v.to_array()).enumerate()
                 {
                     sums[a] += f64::from(value) * dt;
@@ -219,14 +241,19 @@ fn accumulate() -> Case {
             }
             _ => sums[0] += f64::from(values[k * VALUES]) * dt,
         }
-        if ![0, 1, 5, 6].contains(&k) {
+        if ![0, 1, 5, 6, 8].contains(&k) {
             continue;
         }
         let row = accounts[k * Account::WORDS + Account::ROWS];
         let at = (probes[k].first_row + row) as usize * ROW;
         new_rows[at] = f64::from(elapsed);
+        let mut means = at + 1;
+        if probes[k].kind == ProbePoint::BODY {
+            new_rows[means..][..POSE].copy_from_slice(&pose);
+            means += POSE;
+        }
         for v in 0..VALUES {
-            new_rows[at + 1 + v] = account[Account::SUMS + v] / account[Account::TIME];
+            new_rows[means + v] = account[Account::SUMS + v] / account[Account::TIME];
             account[Account::SUMS + v] = 0.0;
         }
         account[Account::TIME] = 0.0;

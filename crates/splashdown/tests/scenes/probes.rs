@@ -13,6 +13,7 @@ fn probes_are_read() {
          [[probe]]\nname = \"f1\"\nquantity = \"force\"\nbody = \"wheel\"\n\
          [[probe]]\nname = \"q1\"\nquantity = \"flow\"\nposition = [0.5, 0.5, 0.5]\nnormal = [0, 0, 2]\nsize = [0.2, 0.1]\n\
          [[probe]]\nname = \"all\"\nquantity = \"fluid\"\n\
+         [[probe]]\nname = \"b1\"\nquantity = \"body\"\nbody = \"wheel\"\ninterval = 0.01\n\
          [[probe]]\nname = \"low\"\nquantity = \"fluid\"\nmin = [0, 0, 0]\nmax = [1, 0.5, 1]\n"
     );
     let scene = parse(&text).unwrap_or_else(|errors| panic!("{errors}"));
@@ -25,7 +26,8 @@ fn probes_are_read() {
     assert_eq!((normal, size), (Vec3::Z, [0.2, 0.1]));
     assert!(along.dot(normal).abs() < 1e-6 && along.y.abs() < 1e-6, "{along}");
     assert_eq!(quantities[4], Quantity::Fluid { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY });
-    assert_eq!(quantities[5], Quantity::Fluid { min: Vec3::ZERO, max: Vec3::new(1.0, 0.5, 1.0) });
+    assert_eq!(quantities[5], Quantity::Body("wheel".into()));
+    assert_eq!(quantities[6], Quantity::Fluid { min: Vec3::ZERO, max: Vec3::new(1.0, 0.5, 1.0) });
 }
 
 #[test]
@@ -36,6 +38,9 @@ fn errors_in_probes_are_reported() {
         (probe("quantity = \"pressure\"\nposition = [0, 9, 0]"), "outside the domain"),
         (probe("quantity = \"presure\"\nposition = [0, 0, 0]"), "did you mean \"pressure\"?"),
         (probe("quantity = \"force\"\nbody = \"wheal\""), "did you mean \"wheel\"?"),
+        (probe("quantity = \"body\"\nbody = \"wheal\""), "there is no body called \"wheal\""),
+        (probe("quantity = \"body\"\nbody = \"barrel\""), "wheel"),
+        (probe("quantity = \"body\""), "probe[0].body is missing: body needs it"),
         (
             probe("quantity = \"force\"\nbody = \"wheel\"\nposition = [0, 0, 0]"),
             "does not apply to quantity = \"force\"",

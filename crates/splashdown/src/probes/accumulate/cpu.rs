@@ -1,5 +1,5 @@
 use super::AccumulateBindings;
-use crate::probes::{Account, ProbePoint, ROW, VALUES};
+use crate::probes::{Account, POSE, ProbePoint, ROW, VALUES, pose_of};
 
 pub(super) fn accumulate(buffers: AccumulateBindings<'_>) {
     let AccumulateBindings {
@@ -23,7 +23,7 @@ pub(super) fn accumulate(buffers: AccumulateBindings<'_>) {
         let add = |word: &mut u32, value: f32| *word = (f32::from_bits(*word) + value).to_bits();
         add(&mut account[Account::TIME], dt);
         let sums = &mut account[Account::SUMS..];
-        if probe.kind == ProbePoint::FORCE {
+        if probe.has_force() {
             let body = &bodies[probe.body as usize];
             for a in 0..3 {
                 add(&mut sums[a], body.force[a] * dt);
@@ -45,9 +45,13 @@ pub(super) fn accumulate(buffers: AccumulateBindings<'_>) {
         let at = (probe.first_row + row) as usize * ROW;
         let duration = f32::from_bits(account[Account::TIME]);
         rows[at] = elapsed;
+        if probe.kind == ProbePoint::BODY {
+            rows[at + 1..][..POSE].copy_from_slice(&pose_of(&bodies[probe.body as usize]));
+        }
+        let means = at + 1 + probe.pose_length();
         for v in 0..VALUES {
             let sum = &mut account[Account::SUMS + v];
-            rows[at + 1 + v] = f32::from_bits(*sum) / duration;
+            rows[means + v] = f32::from_bits(*sum) / duration;
             *sum = 0;
         }
         account[Account::TIME] = 0;

@@ -1,7 +1,8 @@
 //! Accumulates the values of the probes since their last row, and writes a row when it is due; one invocation per probe.
 //!
 //! A row is the mean over the time since the previous row. A mean preserves impulses exactly for any interval, and
-//! averages out the pressure oscillations of sound waves.
+//! averages out the pressure oscillations of sound waves. The pose and the velocity of a body are those at the end of the
+//! step that writes the row, after the motion of the bodies.
 
 mod cpu;
 

@@ -150,7 +150,7 @@ pub(super) static SINK: Table = Table {
 };
 
 pub(super) static PROBE: Table = Table {
-    about: "A measurement in every time step, written to probes/NAME.csv. Each row is the mean since the previous row.",
+    about: "A measurement in every time step, written to probes/NAME.csv. Each row is the mean since the previous row; the pose and the velocity of a body are those at its time.",
     keys: &[
         key("name", Kind::Name, "Name of the probe and of its file.").required(),
         key("quantity", Kind::Word(words::<QuantityWord>), "Measured quantity.")
@@ -158,7 +158,7 @@ pub(super) static PROBE: Table = Table {
             .also(&["type", "kind", "measure"]),
         key("position", a_vector(FAR, "m"), "Point of a pressure, foot of a height column (at least three spacings from closed sides), or centre of a flow rectangle.")
             .also(&["point", "center"]),
-        key("body", Kind::Name, "Name of the body on which the force acts."),
+        key("body", Kind::Name, "Name of the body whose force or state is measured."),
         key(
             "normal",
             a_vector(FAR, ""),

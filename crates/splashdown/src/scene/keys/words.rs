@@ -44,6 +44,9 @@ choices! {
         Height = "height",
         /// Force in N and torque in N m of the fluid on a body: needs `body`.
         Force = "force",
+        /// Pose and velocity of a body at the end of each row's time step, and the mean force in N and torque in N m of the
+        /// fluid on it: needs `body`.
+        Body = "body",
         /// Volume flow in m^3/s through a rectangle: needs `position`, `normal` and `size`.
         Flow = "flow",
         /// Volume in m^3, kinetic and potential energy in J and momentum in N s of all fluid, or of the fluid

@@ -52,13 +52,14 @@ fn read_probe(section: &Section<'_>, context: &Context<'_>) -> Part<Probe> {
         QuantityWord::Pressure => "pressure",
         QuantityWord::Height => "height",
         QuantityWord::Force => "force",
+        QuantityWord::Body => "body",
         QuantityWord::Flow => "flow",
         QuantityWord::Fluid => "fluid",
         QuantityWord::Energy => "energy",
     };
     let fitting: &[&str] = match quantity {
         QuantityWord::Pressure | QuantityWord::Height => &["position", "interval"],
-        QuantityWord::Force => &["body", "interval"],
+        QuantityWord::Force | QuantityWord::Body => &["body", "interval"],
         QuantityWord::Flow => &["position", "normal", "along", "size", "interval"],
         // It has one row per frame, so there is no interval.
         QuantityWord::Fluid => &["min", "max"],
@@ -89,6 +90,7 @@ fn read_probe(section: &Section<'_>, context: &Context<'_>) -> Part<Probe> {
         QuantityWord::Pressure => Quantity::Pressure(point()?),
         QuantityWord::Height => Quantity::Height(point()?),
         QuantityWord::Force => Quantity::Force(known_body(section, body?, context.bodies, missing)?),
+        QuantityWord::Body => Quantity::Body(known_body(section, body?, context.bodies, missing)?),
         QuantityWord::Flow => {
             let center = point()?;
             let normal = unit(section, "normal", normal?.ok_or_else(|| missing("normal"))?)?;
