@@ -38,6 +38,7 @@
 )]
 
 pub mod appearance;
+mod body_meshes;
 mod body_table;
 mod checkpoints;
 mod error;

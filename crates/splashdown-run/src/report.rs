@@ -27,6 +27,12 @@ pub(crate) struct Report {
     pub device: Option<String>,
     /// Particle spacing in m.
     pub particle_spacing: f32,
+    /// Frames per second.
+    pub frame_rate: f32,
+    /// Gravity in m/s^2.
+    pub gravity: [f32; 3],
+    /// The names of the bodies.
+    pub bodies: Vec<String>,
     /// Frames with complete files, including the initial one.
     pub complete_frames: usize,
     /// The end of the simulation.
@@ -105,6 +111,9 @@ impl Report {
             scene: scene.name.clone(),
             file: scene.source.as_ref().map(|path| path.display().to_string()),
             particle_spacing: scene.fluid.particle_spacing,
+            frame_rate: scene.frame_rate,
+            gravity: scene.gravity.to_array(),
+            bodies: scene.bodies.iter().map(|body| body.name.clone()).collect(),
             ..Self::default()
         }
     }

@@ -77,6 +77,16 @@ fn a_finished_run_is_read_as_it_was_written() -> Outcome {
         assert_eq!(frame.bodies[1].position.y, 0.1);
     }
     assert!(heights.is_sorted_by(|a, b| a > b), "the ball falls: {heights:?}");
+
+    // What other programs need to draw the bodies.
+    for body in frames.body_meshes()? {
+        let written = read_mesh(&out.join(format!("bodies/{}.ply", body.name)))?;
+        assert_eq!((&written.vertices, &written.triangles), (&body.mesh.vertices, &body.mesh.triangles));
+    }
+    let report: serde_json::Value = serde_json::from_slice(&fs::read(out.join("run.json"))?)?;
+    assert_eq!(report["bodies"], serde_json::json!(["ball", "post"]));
+    assert_eq!(report["gravity"], serde_json::json!([0.0, -9.81, 0.0]));
+    assert_eq!(report["frame_rate"], 200.0);
     Ok(())
 }
 

@@ -10,7 +10,7 @@ use std::path::Path;
 use splashdown::scene::{Choice, PictureKind};
 use splashdown_io::WrittenFile;
 
-use super::{BODIES, PROBES, RunFolder, numbered};
+use super::{BODIES, BODY_MESH_ENDING, PROBES, RunFolder, numbered};
 
 /// The first bytes of the table of a probe or body.
 const TABLE_HEADER: &[u8] = b"time (s),";
@@ -67,8 +67,13 @@ impl RunFolder {
         let _ = fs::remove_dir(self.checkpoint_folder());
         for tables in [PROBES, BODIES].map(|name| self.root.join(name)) {
             for entry in fs::read_dir(&tables).into_iter().flatten().flatten() {
-                if is_table(&entry.path()) {
-                    remove(&entry.path());
+                let path = entry.path();
+                if is_table(&path) {
+                    remove(&path);
+                    // The mesh of a body is next to its table.
+                    if tables.ends_with(BODIES) {
+                        remove(&path.with_extension(BODY_MESH_ENDING));
+                    }
                 }
             }
             let _ = fs::remove_dir(&tables);
@@ -130,15 +135,19 @@ mod tests {
         fs::write(&frame, "old")?;
         fs::write(folder.probe("gauge"), "time (s),height (m)\n")?;
         fs::write(folder.body("crate"), "time (s),position x (m)\n")?;
+        fs::write(folder.body_mesh("crate"), "ply")?;
+        fs::write(folder.body_mesh("boat"), "ply")?;
         let other = folder.probe("measured");
         fs::write(&other, "seconds,metres\n")?;
         // Without a report the folder may belong to another program.
         assert_eq!(folder.remove_earlier(), 0);
         assert!(frame.exists());
         fs::write(folder.report(), "{}")?;
-        assert_eq!(folder.remove_earlier(), 4);
+        assert_eq!(folder.remove_earlier(), 5);
         assert!(!frame.exists() && mine.exists() && other.exists() && !folder.probe("gauge").exists());
-        assert!(!folder.body("crate").exists());
+        assert!(!folder.body("crate").exists() && !folder.body_mesh("crate").exists());
+        // Without a table, the mesh is a file of the user.
+        assert!(folder.body_mesh("boat").exists());
         Ok(())
     }
 }

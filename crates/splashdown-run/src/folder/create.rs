@@ -18,7 +18,7 @@ pub(crate) struct Subfolders {
     pub pictures: bool,
     /// Probe tables.
     pub probes: bool,
-    /// Tables of bodies.
+    /// Tables and meshes of bodies.
     pub bodies: bool,
     /// Checkpoints.
     pub checkpoints: bool,

@@ -19,8 +19,10 @@ use numbered::{CHECKPOINT, CHECKPOINTS, frame_number};
 
 /// The folder of the probe tables, whose names come from the scene.
 const PROBES: &str = "probes";
-/// The folder of the tables of the bodies.
+/// The folder of the tables and the meshes of the bodies.
 const BODIES: &str = "bodies";
+/// The ending of the mesh of a body.
+const BODY_MESH_ENDING: &str = "ply";
 
 /// The names of all files of a run.
 #[derive(Clone, Debug)]
@@ -146,6 +148,11 @@ impl RunFolder {
     /// The table of a body.
     pub fn body(&self, name: &str) -> PathBuf {
         self.root.join(BODIES).join(format!("{name}.csv"))
+    }
+
+    /// The mesh of a body.
+    pub fn body_mesh(&self, name: &str) -> PathBuf {
+        self.root.join(BODIES).join(format!("{name}.{BODY_MESH_ENDING}"))
     }
 
     /// The report.

@@ -36,6 +36,8 @@ pub struct Session {
     folder: RunFolder,
     files: FrameFiles,
     tables: Tables,
+    /// The files of the bodies' meshes.
+    body_meshes: Vec<WrittenFile>,
     checkpoints: CheckpointWriter,
     pictures: Option<Pictures>,
     /// The films of a run that draws no more pictures.
@@ -168,6 +170,7 @@ impl Session {
             folder,
             files,
             tables,
+            body_meshes,
             checkpoints,
             pictures,
             mut films,
@@ -198,6 +201,7 @@ impl Session {
         let ended = files.finish(pictures_failed);
         written.extend(ended.files);
         written.extend(tables.finish());
+        written.extend(body_meshes);
         complete(ended.frames, &mut report, &mut last_complete, reporter);
         if let Some(error) = ended.failure {
             failure.get_or_insert(error.into());

@@ -7,6 +7,7 @@ use splashdown::{Run, RunOptions};
 
 use super::earlier::Earlier;
 use super::{Session, count_of};
+use crate::body_meshes;
 use crate::checkpoints::CheckpointWriter;
 use crate::folder::{Subfolders, remove_partial};
 use crate::frames::FrameFiles;
@@ -92,6 +93,7 @@ impl Session {
             run,
             files,
             tables: Tables::default(),
+            body_meshes: Vec::new(),
             checkpoints: CheckpointWriter::new(folder.clone(), settings.checkpoint_every, notes),
             pictures: None,
             films: Vec::new(),
@@ -129,6 +131,7 @@ impl Session {
             Some(_) => Tables::resume(&scene, &session.folder, &table_bytes, reporter)?,
             None => Tables::create(&scene, &session.folder)?,
         };
+        session.body_meshes = body_meshes::write(session.run.bodies(), &session.folder)?;
         Ok(session)
     }
 
