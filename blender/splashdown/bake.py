@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bpy
 
-from . import collect, motion, playback, preferences, show
+from . import bodies, collect, motion, playback, preferences, show
 from .core import program, scene as core
 from .core.run_folder import DIFFUSE, scene_of
 from .core.simulation import Failed, Simulation, refuse_resume
@@ -133,7 +133,7 @@ class Bake(Simulation):
         playback.baked = None
         self._show(scene)
         moved = {obj: self.bodies[key] for key, obj in self._obstacles(scene).items() if key in self.floating}
-        for problem in show.move_bodies(str(self.run), moved, self.start_frame, 1 / self.frame_rate, self.metres_per_unit):
+        for problem in bodies.move_obstacles(str(self.run), moved, self.start_frame, 1 / self.frame_rate, self.metres_per_unit):
             self.warn(problem)
         _push_undo()
 

@@ -82,3 +82,18 @@ def foam():
     matte.inputs["Color"].default_value = (0.9, 0.92, 0.93, 1)
     links.new(matte.outputs[0], output.inputs["Surface"])
     return material
+
+
+def body(colour=None):
+    """A matte material of a body of a run. `colour`: linear RGB in [0, 1]; grey without one."""
+    red, green, blue = colour or (0.5, 0.5, 0.5)
+    name = f"Splashdown Body {red:.3g} {green:.3g} {blue:.3g}" if colour else "Splashdown Body"
+    if name in bpy.data.materials:
+        return bpy.data.materials[name]
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    material.diffuse_color = (red, green, blue, 1)
+    shader = material.node_tree.nodes["Principled BSDF"]
+    shader.inputs["Base Color"].default_value = (red, green, blue, 1)
+    shader.inputs["Roughness"].default_value = 0.6
+    return material

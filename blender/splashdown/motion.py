@@ -101,11 +101,11 @@ def restore(obj):
         own.has_rest = False
 
 
-def apply(obj, rows, start_frame, frame_interval, metres_per_unit):
+def apply(obj, rows, start_frame, frame_interval, metres_per_unit, up="Y"):
     """Sets keyframes of place and rotation.
 
     `rows`: time (s), position (m) and unit quaternion x, y, z, w in the axes of the program. `frame_interval`: simulated
-    time between frames, s.
+    time between frames, s. `up`: the axis of the program that is up.
     """
     remember(obj)
     # The export turns a mirrored object in another way than Blender: a constant rotation between the two.
@@ -126,8 +126,8 @@ def apply(obj, rows, start_frame, frame_interval, metres_per_unit):
     try:
         for time, position, quaternion in rows:
             frame = start_frame + time / frame_interval
-            obj.location = Vector(axes.to_blender(position)) / metres_per_unit - shift
-            turned = before @ Quaternion(axes.quaternion_to_blender(quaternion)) @ after
+            obj.location = Vector(axes.to_blender(position, up)) / metres_per_unit - shift
+            turned = before @ Quaternion(axes.quaternion_to_blender(quaternion, up)) @ after
             # A quaternion and its negative are the same rotation; between keyframes the nearer one is meant.
             if last is not None and last.dot(turned) < 0:
                 turned.negate()

@@ -1,5 +1,6 @@
 """Opens the folder of an existing run."""
 
+import math
 import tomllib
 from pathlib import Path
 
@@ -7,26 +8,31 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, StringProperty
 
-from . import collect, playback, show
-from .core import ply
-from .core.run_folder import RunFolder
+from . import bodies, collect, playback, show
+from .core import axes, ply
+from .core.run_folder import RunFolder, scene_of, three_numbers
+from .core.scene import HEADER
 
 # Droplets are spheres with the volume of a particle, so many spacings wide.
 DROPLET_WIDTH = 1.24
 
 
-def open_run(scene, path, fit_frames=True):
+def open_run(scene, path, fit_frames=True, fit_rate=True):
     """Shows the run in the folder `path` from the first frame of the scene on.
 
-    `fit_frames`: sets the end of the scene to the last frame of the run. Returns the objects and problems as texts; no
-    objects if the folder has no frames that can be read.
+    `fit_frames`: sets the end of the scene to the last frame of the run. `fit_rate`: sets the frame rate of the scene to
+    that of the run, unless the scene shows another run or the extension has baked this one. Returns the objects and
+    problems as texts; no objects if the folder has no frames that can be read.
     """
     run = RunFolder(bpy.path.abspath(path))
     problems = run.problems()
     series = run.present()
     if not series:
         return [], problems
+    description, is_baked = scene_file(run)
     interval = run.frame_interval()
+    if interval is not None and fit_rate and not is_baked and not _other_runs(scene, path):
+        scene.render.fps, scene.render.fps_base = frame_rate(interval)
     if interval is None:
         interval = scene.render.fps_base / scene.render.fps
         problems.append("The time between frames is unknown: one frame of the scene is assumed")
@@ -34,7 +40,9 @@ def open_run(scene, path, fit_frames=True):
     if spacing is None:
         spacing = _spacing_of_droplets(run) or 0.01 * _extent(run)
         problems.append(f"The particle spacing is unknown: {spacing:.3g} m is assumed for the size of points")
-    description = scene_file(run)
+    gravity = run.gravity() or three_numbers(_section(description, "scene").get("gravity"))
+    # A bake has y up for any gravity.
+    up = "Y" if is_baked or gravity is None else axes.up_of(gravity)
     unit = collect.metres_per_unit(scene)
     name = Path(run.path).name
     if name == "run":
@@ -50,8 +58,18 @@ def open_run(scene, path, fit_frames=True):
         metres_per_unit=unit,
         liquid=_word(description, "fluid", "material") or "water",
         domain=_walls(description),
+        up=up,
     )
-    problems += show.show_bodies(scene, path, name, scene.frame_start, interval, unit)
+    problems += bodies.show_bodies(
+        scene,
+        path,
+        name=name,
+        start_frame=scene.frame_start,
+        frame_interval=interval,
+        metres_per_unit=unit,
+        up=up,
+        colours=_colours(description),
+    )
     if fit_frames:
         scene.frame_end = scene.frame_start + run.last()
     for problem in problems:
@@ -59,25 +77,49 @@ def open_run(scene, path, fit_frames=True):
     return shown, problems
 
 
+def frame_rate(interval):
+    """The settings `fps` and `fps_base` of Blender for a time between frames in s."""
+    fps = max(1, min(32767, math.ceil(1 / interval - 1e-3)))
+    base = fps * interval
+    return fps, 1.0 if abs(base - 1) < 1e-5 else base
+
+
+def _other_runs(scene, path):
+    """Whether the scene shows another run, which may have another frame rate."""
+    return any(not playback.same_folder(obj.splashdown_cache.run, path) for obj in playback.shown_objects(scene))
+
+
 def scene_file(run):
-    """The scene file that `run.json` names, as a dictionary; empty if it is missing or is not the one of the run."""
+    """The scene file that `run.json` names, as a dictionary, and whether the extension has written it. If it is missing or
+    not the one of the run: the scene of the last checkpoint, or an empty dictionary."""
     name = run.report.get("file")
-    if not isinstance(name, str):
-        return {}
-    for path in (run.path.parent / Path(name).name, Path(name)):
+    for path in (run.path.parent / Path(name).name, Path(name)) if isinstance(name, str) else ():
         try:
-            values = tomllib.loads(path.read_text("utf-8"))
+            text = path.read_text("utf-8")
+            values = tomllib.loads(text)
         except (OSError, ValueError):
             continue
         if _word(values, "scene", "name") == run.report.get("scene"):
-            return values
-    return {}
+            return values, text.startswith(HEADER)
+    return scene_of(run.path), False
+
+
+def _section(values, name):
+    part = values.get(name)
+    return part if isinstance(part, dict) else {}
 
 
 def _word(values, section, key):
-    part = values.get(section)
-    value = part.get(key) if isinstance(part, dict) else None
+    value = _section(values, section).get(key)
     return value if isinstance(value, str) else None
+
+
+def _colours(values):
+    """The bodies of a scene file with their colours."""
+    sections = values.get("body")
+    sections = [part for part in sections if isinstance(part, dict)] if isinstance(sections, list) else []
+    named = [part for part in sections if isinstance(part.get("name"), str)]
+    return {part["name"]: three_numbers(part.get("colour", part.get("color"))) for part in named}
 
 
 def _walls(values):
@@ -125,6 +167,11 @@ class SPLASHDOWN_OT_open_run(bpy.types.Operator):
     directory: StringProperty(name="Folder", description="Folder with `run.json`", subtype="DIR_PATH")
     filter_folder: BoolProperty(default=True, options={"HIDDEN"})
     fit_frames: BoolProperty(name="Set end frame", description="Set the end of the scene to the last frame", default=True)
+    fit_rate: BoolProperty(
+        name="Set frame rate",
+        description="Set the frame rate of the scene to that of the run, unless the scene shows another run",
+        default=True,
+    )
 
     def invoke(self, context, _event):
         context.window_manager.fileselect_add(self)
@@ -135,7 +182,7 @@ class SPLASHDOWN_OT_open_run(bpy.types.Operator):
             self.report({"ERROR"}, "Choose the folder of a run")
             return {"CANCELLED"}
         path = self.directory.rstrip("/\\") or self.directory
-        shown, problems = open_run(context.scene, path, self.fit_frames)
+        shown, problems = open_run(context.scene, path, self.fit_frames, self.fit_rate)
         if not shown:
             self.report({"ERROR"}, problems[0])
             return {"CANCELLED"}

@@ -142,6 +142,8 @@ class SPLASHDOWN_PT_results(_Panel, bpy.types.Panel):
                 column = _settings(box.column())
                 column.prop(cache, "start_frame")
                 column.prop(cache, "wall_overlap")
+            if cache.series in ("surface", "particles") and abs(playback.pace(obj, context.scene) - 1) > 1e-3:
+                draw_text(box, playback.pace_text(obj, context.scene), icon="INFO")
             if cache.note:
                 draw_text(box, cache.note, icon="ERROR")
 

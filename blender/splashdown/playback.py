@@ -14,7 +14,7 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 from .core import axes, ply
-from .core.run_folder import RunFolder
+from .core.run_folder import RunFolder, unreadable
 
 _suspended = 0
 _rendering = False
@@ -88,6 +88,34 @@ def report_once(obj, text):
         print(f"Splashdown: {folder_of(obj)}: {text}")
 
 
+def pace(obj, scene):
+    """Simulated time over the time of the film."""
+    return obj.splashdown_cache.frame_interval * scene.render.fps / scene.render.fps_base
+
+
+def pace_text(obj, scene):
+    """Compares the frame rates of a run and the scene."""
+    run, film = 1 / obj.splashdown_cache.frame_interval, scene.render.fps / scene.render.fps_base
+    speed = f"it plays at {pace(obj, scene):.3g} times its speed"
+    return f"The run has {run:.4g} frames per second and the scene {film:.4g}: {speed}"
+
+
+def holder(scene, obj):
+    """The object with the surface or the particles of the run that an object shows. It holds the notes about its files."""
+    for one in shown_objects(scene):
+        cache = one.splashdown_cache
+        if cache.series in ("surface", "particles") and same_folder(cache.run, obj.splashdown_cache.run):
+            return one
+    return obj
+
+
+def _report_damage(obj, scene, run, number, error):
+    """Reports a frame that cannot be read, in the words in which the opening of the run reports it."""
+    series = obj.splashdown_cache.series
+    text = run.damage(series).get(number) or unreadable([number], series, error)
+    report_once(holder(scene, obj), text)
+
+
 def load(obj, scene, force=False):
     """Gives an object the data of the present frame. Frames that are missing or cannot be read are replaced by the one
     before; nothing is shown before the first one. Without any frame the object stays as it is."""
@@ -102,8 +130,6 @@ def load(obj, scene, force=False):
         if baked is None or not same_folder(path, baked):
             report_once(obj, run.problems()[0])
         return
-    # Velocities per second of the film.
-    pace = cache.frame_interval * scene.render.fps / scene.render.fps_base
     # Droplets and foam of another frame would hang in the air.
     holds = cache.series in ("surface", "particles")
     number = wanted
@@ -113,14 +139,14 @@ def load(obj, scene, force=False):
             key, frame = "", None
         else:
             number, path = found
-            rate = pace if number == wanted else 0.0
+            rate = pace(obj, scene) if number == wanted else 0.0
             try:
                 key = f"{path}|{path.stat().st_mtime_ns}|{rate:.6g}|{cache.wall_overlap:.6g}"
                 if not force and obj.data.get("splashdown_frame") == key:
                     return
                 frame = ply.read(path)
             except (ply.FrameError, OSError) as error:
-                report_once(obj, f"{path.name}: {error}; the frame before is shown")
+                _report_damage(obj, scene, run, number, error)
                 number -= 1
                 continue
         break
@@ -151,17 +177,22 @@ def _fill_surface(mesh, frame, cache, rate):
     if cache.wall_overlap > 0:
         positions = beyond_walls(positions, cache.wall_low, cache.wall_high, cache.wall_overlap)
     unit = np.float32(cache.metres_per_unit)
+    fill_triangles(mesh, axes.to_blender(positions, cache.up) / unit, frame.triangles, is_smooth=True)
+    _add_vector(mesh, "velocity", axes.to_blender(frame.velocities(), cache.up) * np.float32(rate) / unit)
+    mesh.update(calc_edges=True)
+
+
+def fill_triangles(mesh, vertices, triangles, is_smooth):
+    """Replaces the geometry of a mesh. `vertices`: shape (N, 3), float32, in the axes and units of Blender. `triangles`:
+    shape (M, 3), int32. Update the mesh afterwards."""
     mesh.clear_geometry()
-    mesh.vertices.add(len(positions))
-    mesh.vertices.foreach_set("co", (axes.to_blender(positions) / unit).ravel())
-    triangles = frame.triangles
+    mesh.vertices.add(len(vertices))
+    mesh.vertices.foreach_set("co", vertices.ravel())
     mesh.loops.add(triangles.size)
     mesh.loops.foreach_set("vertex_index", triangles.ravel())
     mesh.polygons.add(len(triangles))
     mesh.polygons.foreach_set("loop_start", np.arange(0, triangles.size, 3, dtype=np.int32))
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(triangles), bool))
-    _add_vector(mesh, "velocity", axes.to_blender(frame.velocities()) * np.float32(rate) / unit)
-    mesh.update(calc_edges=True)
+    mesh.polygons.foreach_set("use_smooth", np.full(len(triangles), is_smooth))
 
 
 def beyond_walls(positions, low, high, overlap):
@@ -179,11 +210,11 @@ def _fill_points(mesh, frame, cache, rate):
     count = len(frame.positions)
     mesh.clear_geometry()
     mesh.vertices.add(count)
-    mesh.vertices.foreach_set("co", (axes.to_blender(frame.positions) / unit).ravel())
+    mesh.vertices.foreach_set("co", (axes.to_blender(frame.positions, cache.up) / unit).ravel())
     width = frame.values.get("width")
     radius = np.full(count, cache.radius, np.float32) if width is None else 0.5 * width
     _add_number(mesh, "radius", radius / unit)
-    _add_vector(mesh, "velocity", axes.to_blender(frame.velocities()) * np.float32(rate) / unit)
+    _add_vector(mesh, "velocity", axes.to_blender(frame.velocities(), cache.up) * np.float32(rate) / unit)
     if "lifetime" in frame.values:
         _add_number(mesh, "lifetime", frame.values["lifetime"])
     mesh.update()

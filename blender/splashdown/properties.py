@@ -11,7 +11,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from .core.axes import SIDES
+from .core.axes import SIDES, TURNS
 from .core.liquids import LIQUIDS
 from .core.run_folder import SERIES
 
@@ -175,13 +175,16 @@ class SplashdownCache(bpy.types.PropertyGroup):
     series: EnumProperty(
         name="Series", items=[("NONE", "None", "")] + [(series, series.capitalize(), "") for series in SERIES]
     )
-    body: StringProperty(name="Body of the run that an empty shows", options={"HIDDEN"})
+    body: StringProperty(name="Body of the run that the object shows", options={"HIDDEN"})
     run: StringProperty(name="Run", description="Folder with `run.json`", subtype="DIR_PATH", **RELATIVE)
     start_frame: IntProperty(
         name="Start frame", description="The frame of Blender that shows frame 0 of the run", update=_start_changed
     )
     frame_interval: FloatProperty(name="Frame interval (s)", description="Simulated time between frames", min=0, precision=5)
     metres_per_unit: FloatProperty(name="Metres per unit", default=1, min=1e-6)
+    up: EnumProperty(
+        name="Up", description="The axis of the run that is up", items=[(up, up, "") for up in TURNS], options={"HIDDEN"}
+    )
     radius: FloatProperty(name="Radius (m)", description="Of points whose files contain no width", min=0, precision=5)
     wall_low: FloatVectorProperty(size=3, description="Lower corner of the domain in m, y up")
     wall_high: FloatVectorProperty(size=3, description="Upper corner of the domain in m, y up")

@@ -53,7 +53,7 @@ class Baking(Case):
         scene.frame_set(10)
         foam = shown(scene, "foam")
         self.assertGreater(len(foam.data.vertices), 50)
-        np.testing.assert_allclose(attribute(foam, "radius", 1), part("show").DIFFUSE_RADIUS * 0.05, rtol=1e-5)
+        np.testing.assert_allclose(attribute(foam, "radius", 1), part("show").DIFFUSE_RADII["foam"] * 0.05, rtol=1e-5)
         droplets = shown(scene, "droplets")
         frame = ply_of(self.cache, "droplets", 9)
         self.assertGreater(len(frame.positions), 0)

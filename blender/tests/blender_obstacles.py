@@ -27,12 +27,6 @@ def wedge(scene, **values):
     return obj
 
 
-def world(obj):
-    """The vertices of an object in the world, shape (N, 3)."""
-    matrix = np.array(obj.matrix_world)
-    return np.array([vertex.co for vertex in obj.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]
-
-
 class Obstacles(Case):
     def scene(self, frames=2):
         scene = support.dam_break(self.cache, frames=frames)
@@ -56,20 +50,20 @@ class Obstacles(Case):
             with self.subTest(values):
                 scene = self.scene()
                 obj = wedge(scene, **values)
-                before = world(obj)
+                before = support.world_vertices(obj)
                 mode, rotation = obj.rotation_mode, tuple(obj.rotation_euler)
                 self.bake()
                 for number in (0, 2):
                     scene.frame_set(1 + number)
                     # The run moves the exported mesh.
                     exported = self.exported(number)
-                    np.testing.assert_allclose(world(obj), exported, atol=2e-5)
+                    np.testing.assert_allclose(support.world_vertices(obj), exported, atol=2e-5)
                     if number == 0:
                         np.testing.assert_allclose(exported, before, atol=2e-5)
                 self.assertGreater(np.abs(exported - before).max(), 1e-3)
                 bpy.ops.splashdown.restore()
                 bpy.context.view_layer.update()
-                np.testing.assert_allclose(world(obj), before, atol=1e-6)
+                np.testing.assert_allclose(support.world_vertices(obj), before, atol=1e-6)
                 self.assertEqual((obj.rotation_mode, obj.animation_data), (mode, None))
                 np.testing.assert_allclose(obj.rotation_euler, rotation, atol=1e-6)
 
@@ -105,19 +99,19 @@ class Obstacles(Case):
         scene = self.scene(frames=6)
         scene.objects["Tank"].hide_render = True
         obj = wedge(scene, scale=(1, -2, 0.5))
-        before = world(obj)
+        before = support.world_vertices(obj)
         self.bake()
         scene.frame_set(6)
         # The control: the keyframes have moved it.
-        self.assertGreater(np.abs(world(obj) - before).max(), 0.01)
+        self.assertGreater(np.abs(support.world_vertices(obj) - before).max(), 0.01)
         scene.frame_start, scene.frame_end = 4, 6
         self.bake()
         np.testing.assert_allclose(self.exported(0), before, atol=2e-5)
         scene.frame_set(4)
-        np.testing.assert_allclose(world(obj), before, atol=2e-5)
+        np.testing.assert_allclose(support.world_vertices(obj), before, atol=2e-5)
         bpy.ops.splashdown.restore()
         bpy.context.view_layer.update()
-        np.testing.assert_allclose(world(obj), before, atol=1e-6)
+        np.testing.assert_allclose(support.world_vertices(obj), before, atol=1e-6)
 
     def test_an_animated_pose_of_a_floating_obstacle_is_refused(self):
         obj = wedge(self.scene())

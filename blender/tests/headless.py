@@ -16,10 +16,10 @@ from blender_baking import Baking
 from blender_control import Cancelling, Refusals
 from blender_obstacles import Obstacles
 from blender_rendering import Rendering
-from blender_runs import Opening
+from blender_runs import Opening, OtherRuns
 
 # `unittest.main` finds the tests in this module.
-TESTS = (Baking, Cancelling, Refusals, Obstacles, Opening, Rendering)
+TESTS = (Baking, Cancelling, Refusals, Obstacles, Opening, OtherRuns, Rendering)
 
 
 if __name__ == "__main__":

@@ -48,6 +48,12 @@ def dam_break(folder, frames=8, spacing=0.05):
     return scene
 
 
+def world_vertices(obj):
+    """The vertices of an object in the world, shape (N, 3)."""
+    matrix = np.array(obj.matrix_world)
+    return np.array([vertex.co for vertex in obj.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
 def matte(obj, colour):
     """Gives an object a matte material."""
     material = bpy.data.materials.new(obj.name)

@@ -53,6 +53,25 @@ class Axes(unittest.TestCase):
         points = np.random.default_rng(1).normal(size=(20, 3))
         np.testing.assert_allclose(axes.to_blender(axes.to_program(points)), points)
 
+    def test_the_axis_against_gravity_becomes_z(self):
+        for up, gravity in {
+            "Y": (0, -9.81, 0),
+            "-Y": (0, 9.81, 1),
+            "Z": (0.5, 0, -9.81),
+            "-Z": (0, 0, 1),
+            "X": (-3, 2, 1),
+            "-X": (3, 2, 1),
+        }.items():
+            self.assertEqual(axes.up_of(gravity), up)
+            matrix = axes.to_blender(np.eye(3), up).T
+            self.assertAlmostEqual(np.linalg.det(matrix), 1)
+            against = np.zeros(3)
+            axis = int(np.abs(gravity).argmax())
+            against[axis] = -np.sign(gravity[axis])
+            self.assertEqual(axes.to_blender(against, up).tolist(), [0, 0, 1])
+        self.assertEqual([axes.up_of(gravity) for gravity in ((0, 0, 0), (0, 0, np.nan))], ["Y", "Y"])
+        self.assertEqual(axes.to_blender(np.ones((2, 3), np.float32), "X").dtype, np.float32)
+
     def test_the_angles_of_a_scene_file_give_the_rotation_back(self):
         for angles in [(20, -50, 130), (0, 90, 30), (170, -90, 0), (-179, 10, -100), (0, 0, 0)]:
             x, y, z = angles
@@ -63,16 +82,17 @@ class Axes(unittest.TestCase):
     def test_a_quaternion_turns_as_the_matrix_does(self):
         half = np.radians(35)
         axis = np.array([1, 2, 3]) / np.sqrt(14)
-        w, x, y, z = axes.quaternion_to_blender((*(np.sin(half) * axis), np.cos(half)))
 
-        def rotated(v):
-            u = np.array([x, y, z])
+        def rotated(v, w, *u):
             return v + 2 * np.cross(u, np.cross(u, v) + w * v)
 
         # Rodrigues' formula in the axes of the program.
         v = np.array([0.3, -1, 2.0])
         expected = v * np.cos(2 * half) + np.cross(axis, v) * np.sin(2 * half) + axis * (axis @ v) * (1 - np.cos(2 * half))
-        np.testing.assert_allclose(axes.to_program(rotated(axes.to_blender(v))), expected)
+        for up in axes.TURNS:
+            quaternion = axes.quaternion_to_blender((*(np.sin(half) * axis), np.cos(half)), up)
+            turned = rotated(axes.to_blender(v, up), *quaternion)
+            np.testing.assert_allclose(turned, axes.to_blender(expected, up))
 
     def test_each_side_of_the_domain_is_the_one_of_its_name(self):
         for name, side, label in axes.SIDES:
@@ -259,7 +279,50 @@ class Runs(unittest.TestCase):
         (self.path / "bodies/crate.csv").write_text(header + rows)
         places, problems = run_folder.RunFolder(self.path).bodies()
         self.assertEqual([row[0] for row in places["crate"]], [0.0, 0.3])
-        self.assertEqual(problems, ["crate.csv has 2 incomplete rows"])
+        self.assertEqual(problems[0], "crate.csv has 2 incomplete rows")
+
+    def test_tables_of_bodies_are_compared_with_the_run(self):
+        (self.path / "bodies").mkdir()
+        header = "time (s),position x (m),y,z,orientation x,y,z,w\n"
+        rows = [f"{0.05 * number},1,2,3,0,0,0,1\n" for number in range(5)]
+        report = json.loads((self.path / "run.json").read_text())
+        (self.path / "run.json").write_text(json.dumps(report | {"bodies": ["whole", "short", "junk", "gone"]}))
+        (self.path / "bodies/whole.csv").write_text(header + "".join(rows))
+        (self.path / "bodies/short.csv").write_text(header + "".join(rows[:3]))
+        (self.path / "bodies/junk.csv").write_bytes(bytes(range(256)))
+        (self.path / "bodies/empty.csv").write_bytes(b"")
+        (self.path / "bodies/bare.csv").write_text(header)
+        places, problems = run_folder.RunFolder(self.path).bodies(["named"])
+        self.assertEqual(sorted(places), ["short", "whole"])
+        for text in (
+            "short.csv has 3 rows for 5 frames: the body stops at 0.1 s",
+            "junk.csv is not the table of a body: the body does not move",
+            "empty.csv is not the table of a body: the body does not move",
+            "bare.csv has 0 rows for 5 frames: the body does not move",
+            "gone.csv is missing in bodies: the body does not move",
+            "named.csv is missing in bodies: the body does not move",
+        ):
+            self.assertEqual(problems.count(text), 1, problems)
+        self.assertEqual(len(problems), 6, problems)
+
+    def test_the_causes_of_damage_are_not_mixed(self):
+        for number in (1, 2):
+            broken = self.path / f"mesh/surface_000{number}.ply"
+            broken.write_bytes(broken.read_bytes()[:-number])
+        (self.path / "mesh/surface_0003.ply").write_text("no mesh")
+        run = run_folder.RunFolder(self.path)
+        truncated = "frames 1 to 2 of surface cannot be read (it is truncated): the frame before is shown"
+        foreign = "frame 3 of surface cannot be read (it is not a PLY file): the frame before is shown"
+        self.assertEqual(run.problems(), [truncated, foreign])
+        self.assertEqual(run.damage("surface"), {1: truncated, 2: truncated, 3: foreign})
+
+    def test_the_report_says_the_frame_rate_and_the_gravity(self):
+        (self.path / "run.json").write_text('{"frame_rate": 25, "gravity": [0, 0, -9.81], "bodies": "crate"}')
+        run = run_folder.RunFolder(self.path)
+        self.assertEqual((run.frame_interval(), run.gravity(), run.body_names()), (0.04, [0, 0, -9.81], None))
+        (self.path / "run.json").write_text('{"frame_rate": 0, "gravity": [0, true, -9.81]}')
+        run = run_folder.RunFolder(self.path)
+        self.assertEqual((run.frame_interval(), run.gravity()), (None, None))
 
     def test_numbers_are_listed_as_ranges(self):
         self.assertEqual(run_folder.listed([3]), "frame 3")

@@ -1,13 +1,12 @@
 """The folder of a run: which frames exist, and what is wrong with them."""
 
-import csv
 import json
 import re
 import tomllib
 import zipfile
 from pathlib import Path
 
-from . import ply
+from . import body_table, ply
 
 # Folder and stem of the files of each series.
 SERIES = {
@@ -37,6 +36,17 @@ def listed(numbers):
     return f"frame{'' if one else 's'} " + ", ".join(words) + more
 
 
+def unreadable(numbers, series, cause):
+    """Says that frames of a series cannot be read."""
+    return f"{listed(numbers)} of {series} cannot be read ({cause}): the frame before is shown"
+
+
+def three_numbers(value):
+    """A list of three finite numbers, or `None`."""
+    good = isinstance(value, list) and len(value) == 3 and all(type(part) in (int, float) for part in value)
+    return value if good and all(abs(part) < 1e9 for part in value) else None
+
+
 class RunFolder:
     """The files in the folder of a run, as they are when it is created."""
 
@@ -45,6 +55,7 @@ class RunFolder:
         self.report, self._report_problem = self._read_report()
         self.frames, self._doubled = {}, set()
         self._other = {}
+        self._damage = {}
         for series in SERIES:
             self.frames[series] = self._find(series)
 
@@ -114,8 +125,15 @@ class RunFolder:
 
     def frame_interval(self):
         """Simulated time between frames in s; `None` if the report does not say."""
+        rate = self._real("frame_rate")
+        if rate is not None:
+            return 1 / rate
         frames, time = self._real("complete_frames"), self._real("end", "time")
         return time / (frames - 1) if frames and time and frames > 1 else None
+
+    def gravity(self):
+        """In m/s^2, three numbers; `None` if the report does not say."""
+        return three_numbers(self.report.get("gravity"))
 
     def particle_spacing(self):
         """In m; `None` if the report does not say."""
@@ -148,20 +166,29 @@ class RunFolder:
         if later:
             found.append(f"{listed(later)} are later than the last one in run.json: they may belong to another run")
         for series in self.present():
-            found += self._damaged(series)
+            found += dict.fromkeys(self.damage(series).values())
         return found
 
-    def _damaged(self, series):
-        damaged = {}
+    def damage(self, series):
+        """A text for each frame of a series that cannot be read, by number. Frames with the same cause have the same text.
+        Reads the start of each file, once."""
+        if series not in self._damage:
+            self._damage[series] = self._find_damage(series)
+        return self._damage[series]
+
+    def _find_damage(self, series):
+        causes = {}
         for number, path in self.frames[series].items():
             try:
                 ply.check(path)
             except ply.FrameError as error:
-                damaged[number] = str(error)
-        if not damaged:
-            return []
-        first = min(damaged)
-        return [f"{listed(damaged)} of {series} cannot be read ({damaged[first]}): the frame before is shown"]
+                # The sizes of truncated files differ.
+                causes.setdefault(str(error).split(":")[0], {})[number] = str(error)
+        texts = {}
+        for cause, frames in causes.items():
+            cause = next(iter(frames.values())) if len(frames) == 1 else cause
+            texts.update(dict.fromkeys(frames, unreadable(frames, series, cause)))
+        return texts
 
     def _nothing(self):
         formats = sorted({ending for others in self._other.values() for ending in others.values()})
@@ -176,16 +203,30 @@ class RunFolder:
             reason = "choose the folder with `run.json` and `mesh`"
         return f"`{self.path}` has no frames in PLY files: {reason}"
 
-    def bodies(self):
-        """The places of the bodies, by name: rows of time (s), position (m) and quaternion x, y, z, w. And problems."""
+    def body_names(self):
+        """The names of the bodies according to the report; `None` if it does not say."""
+        names = self.report.get("bodies")
+        return names if isinstance(names, list) and all(isinstance(name, str) for name in names) else None
+
+    def bodies(self, names=()):
+        """The places of the bodies, by name: rows of time (s), position (m) and quaternion x, y, z, w. And problems.
+
+        `names`: bodies of which a table must exist, in addition to those of the report.
+        """
         places, found = {}, []
-        for path in sorted((self.path / "bodies").glob("*.csv")):
-            rows, broken = read_places(path)
-            if broken:
-                found.append(f"{path.name} has {broken} incomplete row" + ("s" if broken > 1 else ""))
+        folder = self.path / "bodies"
+        names = {*names, *(self.body_names() or ()), *(path.stem for path in folder.glob("*.csv"))}
+        frames = self.last() + 1 if self.main_series() else 0
+        for name in sorted(names):
+            rows, problems = body_table.read(folder / f"{name}.csv", frames)
+            found += problems
             if rows:
-                places[path.stem] = rows
+                places[name] = rows
         return places, found
+
+    def body_mesh(self, name):
+        """The path of the mesh of a body, in its own frame."""
+        return self.path / "bodies" / f"{name}.ply"
 
 
 def newest_checkpoint(run):
@@ -207,25 +248,3 @@ def scene_of(run):
             return tomllib.loads(archive.read("scene.toml").decode("utf-8"))
     except (OSError, KeyError, ValueError, zipfile.BadZipFile):
         return {}
-
-
-def read_places(path):
-    """Rows (time, position, quaternion) of the table of a body, and the number of rows that cannot be used."""
-    rows, broken = [], 0
-    try:
-        with open(path, newline="", encoding="utf-8", errors="replace") as file:
-            lines = list(csv.reader(file))
-    except OSError:
-        return [], 1
-    width = len(lines[0]) if lines else 0
-    for line in lines[1:]:
-        try:
-            values = [float(word) for word in line[:8]]
-        except ValueError:
-            values = []
-        norm = sum(value * value for value in values[4:8])
-        if len(values) == 8 and len(line) == width and 0.9 < norm < 1.1:
-            rows.append((values[0], tuple(values[1:4]), tuple(values[4:8])))
-        else:
-            broken += 1
-    return rows, broken
