@@ -235,6 +235,55 @@ async function explainsFailedStarts() {
   await refused.close();
 }
 
+// The script and the graphics device may never arrive. The page explains this, offers another try and the film, and
+// starts if they arrive late.
+async function explainsWhatNeverArrives() {
+  const script = "**/splashdown_web.js";
+  const ask = (milliseconds) => (page) => page.addInitScript((milliseconds) => {
+    const request = GPU.prototype.requestAdapter;
+    let asked = 0;
+    GPU.prototype.requestAdapter = async function (...given) {
+      if (asked++ === 0) await new Promise((resolve) => milliseconds && setTimeout(resolve, milliseconds));
+      return request.apply(this, given);
+    };
+  }, milliseconds);
+  // Only the first request for the script is not answered.
+  const stall = (page) => {
+    let asked = 0;
+    return page.route(script, (route) => { if (asked++ > 0) route.continue(); });
+  };
+  const text = (page) => page.evaluate(() => document.body.innerText);
+  const says = async (words, prepare) => {
+    const { page } = await open("?stalled=500#toml=" + encodeURIComponent(scene), prepare);
+    await until(`the message "${words}"`, 30, async () => (await text(page)).includes(words));
+    return page;
+  };
+  for (const [words, prepare] of [
+    ["splashdown_web.js has not arrived", stall],
+    ["does not answer the request for a graphics device", ask(0)],
+  ]) {
+    const page = await says(words, prepare);
+    await until("a film", 20, () => page.evaluate(() => document.querySelector("#note img")?.naturalWidth > 100));
+    assert.equal(await page.evaluate(() => !!window.splashdown), false);
+    // The button loads the page again, on which everything arrives.
+    const loaded = page.waitForEvent("load", { timeout: 30_000 });
+    const [x, y] = await page.evaluate(() => {
+      const button = document.querySelector("#note button").getBoundingClientRect();
+      return [button.x + button.width / 2, button.y + button.height / 2];
+    });
+    await page.mouse.click(x, y);
+    await loaded;
+    await page.close();
+  }
+  // Control: what arrives late starts the program, and the message disappears. The whole program may need longer than half
+  // a second, so its download is not limited here.
+  const late = await open("?stalled=8000#toml=" + encodeURIComponent(scene), ask(9_000));
+  await until("the message", 30, async () => (await text(late.page)).includes("does not answer the request"));
+  await until("the start", 90, () => late.page.evaluate(() => !!window.splashdown));
+  assert.equal(await late.page.evaluate(() => document.getElementById("note").hidden), true);
+  await late.page.close();
+}
+
 // Without WebGPU the page shows a film, and fits a phone.
 async function showsAFilmOnAPhone() {
   const hide = (page) => page.addInitScript(() => Object.defineProperty(navigator, "gpu", { value: undefined }));
@@ -260,6 +309,8 @@ try {
   console.log("ok: recovers from a lost device");
   await explainsFailedStarts();
   console.log("ok: explains failed starts and refuses scenes that do not fit");
+  await explainsWhatNeverArrives();
+  console.log("ok: explains a script and a graphics device that never arrive");
   await showsAFilmOnAPhone();
   console.log("ok: shows a film without WebGPU");
   await reportsMissingFeatures();
