@@ -49,6 +49,13 @@ pub(crate) fn set_address(rest: &str) -> String {
     window.location().href().unwrap_or_default()
 }
 
+/// Sets the title of the page.
+pub(crate) fn set_title(title: &str) {
+    if let Some(document) = web_sys::window().and_then(|window| window.document()) {
+        document.set_title(title);
+    }
+}
+
 /// Puts a scene's text into the address, and the address into the clipboard.
 pub(crate) fn share(text: &str) -> String {
     let address = set_address(&format!("#toml={}", String::from(js_sys::encode_uri_component(text))));

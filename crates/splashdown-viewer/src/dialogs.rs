@@ -87,7 +87,7 @@ fn outcome(picked: Option<PathBuf>, errors: &[String]) -> Result<Option<PathBuf>
     let reasons = errors.join("; ");
     Err(format!(
         "no file dialog can be opened: {reasons}. To have dialogs, {help}. Without them, drop the file or the folder onto this \
-         window, or name it on the command line: splashdown view FILE. Export scene writes into the current folder"
+         window, or name it on the command line: splashdown view FILE. Save scene writes beside the file of the scene"
     ))
 }
 

@@ -33,6 +33,7 @@ pub mod picture;
 mod pixels;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod playback;
+mod problem;
 #[cfg(not(target_arch = "wasm32"))]
 mod recent;
 pub mod save;

@@ -8,27 +8,27 @@ use splashdown_render::{Axis, ColourMap};
 pub enum DisplayMode {
     /// Particles as spheres, coloured by a quantity.
     Particles,
-    /// A liquid reconstructed from the particles in screen space.
-    Liquid,
-    /// The surface by marching cubes, as water.
+    /// The particles drawn as one smooth surface in screen space.
+    Smooth,
+    /// The surface by marching cubes.
     Surface,
     /// The triangles of that surface.
-    Mesh,
+    Triangles,
     /// A plane through the fluid, coloured by a quantity.
     Slice,
 }
 
 impl DisplayMode {
     /// All modes, in the order of their keys.
-    pub const ALL: [Self; 5] = [Self::Particles, Self::Liquid, Self::Surface, Self::Mesh, Self::Slice];
+    pub const ALL: [Self; 5] = [Self::Particles, Self::Smooth, Self::Surface, Self::Triangles, Self::Slice];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Particles => "Particles",
-            Self::Liquid => "Liquid",
+            Self::Smooth => "Smooth",
             Self::Surface => "Surface",
-            Self::Mesh => "Mesh",
+            Self::Triangles => "Triangles",
             Self::Slice => "Slice",
         }
     }
@@ -37,16 +37,16 @@ impl DisplayMode {
     pub fn hint(self) -> &'static str {
         match self {
             Self::Particles => "Particles as spheres, coloured by a quantity",
-            Self::Liquid => "A liquid reconstructed from the particles in screen space: fast, without a mesh",
-            Self::Surface => "The surface by marching cubes, which is the mesh that is exported",
-            Self::Mesh => "The triangles of the surface",
+            Self::Smooth => "The particles drawn as one smooth surface in screen space: fast",
+            Self::Surface => "The surface by marching cubes, which can be exported",
+            Self::Triangles => "The triangles of the surface",
             Self::Slice => "A plane through the fluid, coloured by density, speed or pressure",
         }
     }
 
     /// Whether it needs the surface.
     pub fn needs_surface(self) -> bool {
-        matches!(self, Self::Surface | Self::Mesh)
+        matches!(self, Self::Surface | Self::Triangles)
     }
 
     /// Whether it needs the particles.
@@ -78,7 +78,7 @@ pub struct Look {
 impl Default for Look {
     fn default() -> Self {
         Self {
-            mode: DisplayMode::Liquid,
+            mode: DisplayMode::Smooth,
             colour_by: ColourBy::Speed,
             map: ColourMap::Water,
             slice_axis: Axis::Z,

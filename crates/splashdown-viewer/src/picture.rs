@@ -89,9 +89,9 @@ impl Picture {
             (DisplayMode::Particles, _) => {
                 frame.particles = Some(DrawnParticles::new(drawn.particles(), radius, colouring));
             }
-            (DisplayMode::Surface | DisplayMode::Mesh, Some(mesh)) => {
+            (DisplayMode::Surface | DisplayMode::Triangles, Some(mesh)) => {
                 let style = match look.mode {
-                    DisplayMode::Mesh => SurfaceStyle::Lines,
+                    DisplayMode::Triangles => SurfaceStyle::Lines,
                     _ => SurfaceStyle::Liquid,
                 };
                 let (buffers, liquid) = (mesh.buffers(), appearance::liquid(scene));
@@ -108,7 +108,7 @@ impl Picture {
                 frame.slice = Some(DrawnSlice::new(drawn.particles(), axis, position, radius, colouring));
             }
             // The screen-space liquid is drawn until the first surface is extracted.
-            (DisplayMode::Liquid | DisplayMode::Surface | DisplayMode::Mesh, _) => {
+            (DisplayMode::Smooth | DisplayMode::Surface | DisplayMode::Triangles, _) => {
                 let (buffers, liquid) = (drawn.particles(), appearance::liquid(scene));
                 frame.liquid_particles = Some(DrawnLiquidParticles::new(buffers, radius, liquid));
             }

@@ -6,7 +6,7 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use toml_edit::{Array, DocumentMut, value};
+use toml_edit::{Array, DocumentMut, InlineTable, Value, value};
 
 use crate::state::RecentFile;
 
@@ -16,6 +16,38 @@ const LIMIT: usize = 10;
 const MAX_BYTES: u64 = 64 << 10;
 /// The key in the file.
 const KEY: &str = "recent";
+/// The keys of an entry with a scene. Others are a path alone.
+const PATH: &str = "path";
+const SCENE: &str = "scene";
+
+/// An entry of the list.
+#[derive(Clone, Debug, PartialEq)]
+struct Entry {
+    path: PathBuf,
+    /// The scene of a run that does not name it.
+    scene: Option<PathBuf>,
+}
+
+impl Entry {
+    fn read(value: &Value) -> Option<Self> {
+        if let Some(path) = value.as_str() {
+            return Some(Self { path: path.into(), scene: None });
+        }
+        let table = value.as_inline_table()?;
+        let path = |key: &str| table.get(key).and_then(Value::as_str).map(PathBuf::from);
+        Some(Self { path: path(PATH)?, scene: path(SCENE) })
+    }
+
+    /// `None` if a path is not valid text.
+    fn write(&self) -> Option<Value> {
+        let path = self.path.to_str()?;
+        let Some(scene) = &self.scene else { return Some(path.into()) };
+        let mut table = InlineTable::new();
+        table.insert(PATH, path.into());
+        table.insert(SCENE, scene.to_str()?.into());
+        Some(table.into())
+    }
+}
 
 /// The list in a file.
 #[derive(Clone, Debug)]
@@ -46,25 +78,27 @@ impl RecentFiles {
     /// # Errors
     /// A note, if the file is damaged.
     pub fn list(&self) -> Result<Vec<RecentFile>, String> {
-        let entry = |path: PathBuf| RecentFile { exists: path.exists(), path };
-        Ok(self.paths()?.into_iter().map(entry).collect())
+        let entry = |Entry { path, scene }: Entry| RecentFile { exists: path.exists(), path, scene };
+        Ok(self.entries()?.into_iter().map(entry).collect())
     }
 
-    /// Puts a path in front. A path that is not valid text is not remembered.
+    /// Puts a path in front, with the scene of a run that does not name it. A path that is not valid text is not remembered.
     ///
     /// # Errors
     /// A note, if the file cannot be written.
-    pub fn add(&self, path: &Path) -> Result<(), String> {
-        let Ok(path) = std::path::absolute(path) else { return Ok(()) };
-        if path.to_str().is_none() {
+    pub fn add(&self, path: &Path, scene: Option<&Path>) -> Result<(), String> {
+        // The name of a built-in scene is not a file.
+        let scene = scene.map(|scene| if scene.exists() { absolute(scene) } else { scene.to_owned() });
+        let entry = Entry { path: absolute(path), scene };
+        if entry.write().is_none() {
             return Ok(());
         }
         // A damaged file is replaced.
-        let mut paths = self.paths().unwrap_or_default();
-        paths.retain(|other| *other != path);
-        paths.insert(0, path);
-        paths.truncate(LIMIT);
-        self.write(&paths)
+        let mut entries = self.entries().unwrap_or_default();
+        entries.retain(|other| absolute(&other.path) != entry.path);
+        entries.insert(0, entry);
+        entries.truncate(LIMIT);
+        self.write(&entries)
     }
 
     /// Forgets all entries.
@@ -75,7 +109,7 @@ impl RecentFiles {
         self.write(&[])
     }
 
-    fn paths(&self) -> Result<Vec<PathBuf>, String> {
+    fn entries(&self) -> Result<Vec<Entry>, String> {
         let Some(file) = self.file.as_ref().filter(|file| file.exists()) else { return Ok(Vec::new()) };
         let damaged = |reason: &str| {
             let name = file.display();
@@ -86,16 +120,15 @@ impl RecentFiles {
         let text = read(file).map_err(|reason| damaged(&reason))?;
         let document: DocumentMut = text.parse().map_err(|_| damaged("it is damaged"))?;
         let list = document.get(KEY).and_then(|item| item.as_array());
-        let paths =
-            list.and_then(|list| list.iter().map(|entry| entry.as_str().map(PathBuf::from)).collect());
-        let mut paths: Vec<PathBuf> = paths.ok_or_else(|| damaged("it is not a list of paths"))?;
-        paths.truncate(LIMIT);
-        Ok(paths)
+        let entries: Option<Vec<Entry>> = list.and_then(|list| list.iter().map(Entry::read).collect());
+        let mut entries = entries.ok_or_else(|| damaged("it is not a list of paths"))?;
+        entries.truncate(LIMIT);
+        Ok(entries)
     }
 
-    fn write(&self, paths: &[PathBuf]) -> Result<(), String> {
+    fn write(&self, entries: &[Entry]) -> Result<(), String> {
         let Some(file) = &self.file else { return Ok(()) };
-        let mut list: Array = paths.iter().filter_map(|path| path.to_str()).collect();
+        let mut list: Array = entries.iter().filter_map(Entry::write).collect();
         list.iter_mut().for_each(|entry| entry.decor_mut().set_prefix("\n    "));
         list.set_trailing("\n");
         let mut document = DocumentMut::new();
@@ -110,6 +143,16 @@ impl RecentFiles {
         write().map_err(|error| {
             format!("the list of recent files, `{}`, was not written: {error}", file.display())
         })
+    }
+}
+
+/// The path from the root of the file system, without `..`. A relative one is that of the current folder.
+fn absolute(path: &Path) -> PathBuf {
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    // On Windows the system removes `..`, and its canonical paths have a form that is hard to read.
+    match cfg!(windows) {
+        true => absolute,
+        false => absolute.canonicalize().unwrap_or(absolute),
     }
 }
 
@@ -142,18 +185,37 @@ mod tests {
         assert_eq!(names(&files), [""; 0]);
         let name = |number: u32| format!("a \"{number}\".toml");
         for number in 0..12 {
-            files.add(&folder.path().join(name(number)))?;
+            files.add(&folder.path().join(name(number)), None)?;
         }
-        files.add(&folder.path().join(name(5)))?;
+        files.add(&folder.path().join(name(5)), None)?;
         let expected = [5, 11, 10, 9, 8, 7, 6, 4, 3, 2].map(name);
         assert_eq!(names(&files), expected);
         // A relative path is that of the current folder.
-        files.add(Path::new("Cargo.toml"))?;
+        files.add(Path::new("src/../Cargo.toml"), None)?;
         let listed = files.list()?;
-        assert_eq!(listed[0], RecentFile { path: std::path::absolute("Cargo.toml")?, exists: true });
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).canonicalize()?.join("Cargo.toml");
+        assert_eq!(listed[0], RecentFile { path, scene: None, exists: true });
         assert!(!listed[1].exists && listed.len() == 10);
         files.clear()?;
         assert_eq!(names(&files), [""; 0]);
+        Ok(())
+    }
+
+    #[test]
+    fn the_scene_of_a_run_is_remembered() -> Outcome {
+        let folder = tempfile::tempdir()?;
+        let files = RecentFiles::in_file(folder.path().join("recent.toml"));
+        let scene = folder.path().canonicalize()?.join("a.toml");
+        fs::write(&scene, "")?;
+        fs::create_dir(folder.path().join("run"))?;
+        files.add(&folder.path().join("run/../run"), Some(&folder.path().join("run/../a.toml")))?;
+        files.add(Path::new("/other"), Some(Path::new("dam-break")))?;
+        let scenes: Vec<_> = files.list()?.into_iter().map(|entry| entry.scene).collect();
+        assert_eq!(scenes, [Some("dam-break".into()), Some(scene)]);
+        // The same run without a scene replaces it.
+        files.add(&folder.path().join("run"), None)?;
+        let listed = files.list()?;
+        assert_eq!((listed.len(), &listed[0].scene), (2, &None), "{listed:?}");
         Ok(())
     }
 
@@ -162,11 +224,17 @@ mod tests {
         let folder = tempfile::tempdir()?;
         let file = folder.path().join("recent.toml");
         let files = RecentFiles::in_file(file.clone());
-        for content in [&b"recent = [\"/a\""[..], b"recent = [1, 2]", b"other = 1", b"\xff\xfe"] {
+        for content in [
+            &b"recent = [\"/a\""[..],
+            b"recent = [1, 2]",
+            b"recent = [{ scene = \"/a\" }]",
+            b"other = 1",
+            b"\xff\xfe",
+        ] {
             fs::write(&file, content)?;
             let note = files.list().unwrap_err();
             assert!(note.contains("recent.toml"), "{note}");
-            files.add(Path::new("/b"))?;
+            files.add(Path::new("/b"), None)?;
             assert_eq!(names(&files), ["b"]);
         }
         // Control: a list is read.
@@ -180,11 +248,11 @@ mod tests {
         let folder = tempfile::tempdir()?;
         fs::write(folder.path().join("state"), "a file in place of the folder")?;
         let files = RecentFiles::in_file(folder.path().join("state/recent.toml"));
-        let note = files.add(Path::new("/a")).unwrap_err();
+        let note = files.add(Path::new("/a"), None).unwrap_err();
         assert!(note.contains("was not written"), "{note}");
         assert_eq!(files.list()?, []);
         let none = RecentFiles { file: None };
-        none.add(Path::new("/a"))?;
+        none.add(Path::new("/a"), None)?;
         assert_eq!(none.list()?, []);
         Ok(())
     }

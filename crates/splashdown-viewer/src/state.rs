@@ -8,7 +8,6 @@ use splashdown::scene::Scene;
 use splashdown_gpu::Timings;
 
 use crate::camera::Orbit;
-use crate::edit;
 use crate::engine::Grip;
 use crate::items::{BodyBounds, Grab, History, Item};
 use crate::look::Look;
@@ -20,7 +19,7 @@ pub enum Tool {
     /// Orbits the camera.
     #[default]
     Orbit,
-    /// Applies a force to the water or drags a body.
+    /// Applies a force to the fluid or drags a body.
     Drag,
     /// Tilts the domain.
     Tilt,
@@ -49,7 +48,7 @@ impl Tool {
     pub fn hint(self) -> &'static str {
         match self {
             Self::Orbit => "Drag to orbit the camera; right button to pan, wheel or pinch to zoom",
-            Self::Drag => "Drag water and dynamic bodies (also with Shift held)",
+            Self::Drag => "Drag the fluid and dynamic bodies (also with Shift held)",
             Self::Tilt => "Drag to tilt the tank; double-click to set it upright",
             Self::Shake => "Drag to shake the tank",
             Self::Edit => {
@@ -92,6 +91,8 @@ impl Ask {
 pub struct RecentFile {
     /// Its file or folder.
     pub path: PathBuf,
+    /// The scene of a run that does not name it: a file or the name of a built-in scene.
+    pub scene: Option<PathBuf>,
     /// Whether it still exists.
     pub exists: bool,
 }
@@ -102,7 +103,7 @@ pub enum Action {
     /// Open a built-in scene.
     OpenPreset(&'static str),
     /// Start `State::scene` again at time 0.
-    Reset,
+    Restart,
     /// Continue with the changed `State::scene`.
     Change,
     /// Run or pause.
@@ -124,20 +125,21 @@ pub enum Action {
     Release,
     /// Hold a body.
     Grip(Grip),
-    /// Drop a ball into the domain.
-    DropBall,
-    /// Open or close a tap over the domain.
-    Pour,
     /// Export the current picture.
-    Screenshot,
-    /// Export the scene with its changes.
+    ExportPicture,
+    /// Save the scene with its changes beside its file.
     SaveScene,
     /// Export the current surface.
-    SaveMesh,
+    ExportSurface,
     /// Export a checkpoint.
-    SaveCheckpoint,
+    ExportCheckpoint,
     /// Open a file or the folder of a run.
-    OpenFile(PathBuf),
+    OpenFile {
+        /// The file or the folder.
+        path: PathBuf,
+        /// The scene of a run that does not name it.
+        scene: Option<PathBuf>,
+    },
     /// Open a dialog of the desktop.
     Ask(Ask),
     /// List recent checkpoints in `State::files`, and recent scenes and runs in `State::recent`.
@@ -315,8 +317,6 @@ pub struct State {
     pub recorded: Option<u32>,
     /// Initial number of particles of the scene with its changes.
     pub counted: u64,
-    /// Whether the tap is open.
-    pub pouring: bool,
     /// Checkpoints listed in the gallery.
     pub files: Vec<PathBuf>,
     /// Recent scenes and runs listed in the gallery, the newest first.
@@ -358,7 +358,6 @@ impl State {
             particles_wanted: counted as f32,
             counted,
             recorded: None,
-            pouring: edit::has_tap(&scene),
             files: Vec::new(),
             recent: Vec::new(),
             reading: None,
@@ -370,6 +369,11 @@ impl State {
             body_bounds: BodyBounds::new(),
             scene,
         }
+    }
+
+    /// Whether the scene is shown at time 0, where its things can be edited.
+    pub fn is_at_start(&self) -> bool {
+        !self.playing && self.figures.time == 0.0
     }
 
     /// Counts the initial particles of the scene after a change.

@@ -1,7 +1,7 @@
 //! The position in a finished run that is played: a clock over the numbers of its frames. It needs no files.
 
-/// The slowest and the fastest speed, in simulated seconds per second.
-pub const SPEEDS: std::ops::RangeInclusive<f32> = 0.05..=8.0;
+/// The smallest and the largest time scale, in simulated seconds per second.
+pub const TIME_SCALES: std::ops::RangeInclusive<f32> = 0.05..=8.0;
 
 /// The position in a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Timeline {
     /// Whether it starts again after the last frame.
     pub looping: bool,
     /// Simulated seconds per second.
-    pub speed: f32,
+    pub time_scale: f32,
     /// Frames that cannot be read.
     pub left_out: Vec<u32>,
     /// Whether the run can be continued from a checkpoint.
@@ -44,7 +44,7 @@ impl Timeline {
             ticked: None,
             playing: true,
             looping: true,
-            speed: 1.0,
+            time_scale: 1.0,
             left_out: Vec::new(),
             can_continue: false,
             has_particles: true,
@@ -92,7 +92,7 @@ impl Timeline {
             return;
         }
         // A slow picture advances by more than one frame, but never by more than half a second.
-        self.position += f64::from(self.speed) * passed.min(0.5);
+        self.position += f64::from(self.time_scale) * passed.min(0.5);
         let (first, last) = self.range();
         let end = (f64::from(last) + 1.0) / self.frame_rate;
         if self.position < end {
@@ -110,7 +110,7 @@ impl Timeline {
     pub fn until_next(&self) -> f64 {
         let next = self.frames.get(self.index() + 1).map(|&frame| f64::from(frame));
         let next = next.unwrap_or_else(|| f64::from(self.range().1) + 1.0);
-        ((next / self.frame_rate - self.position) / f64::from(self.speed)).max(0.0)
+        ((next / self.frame_rate - self.position) / f64::from(self.time_scale)).max(0.0)
     }
 
     /// Goes to a frame, or to the last one before it.
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn the_clock_follows_the_speed_and_stays_on_frames_that_exist() {
+    fn the_clock_follows_the_time_scale_and_stays_on_frames_that_exist() {
         let mut timeline = timeline();
         assert_eq!((timeline.current(), timeline.range(), timeline.len()), (2, (2, 7), 4));
         timeline.tick(10.0, true);
@@ -179,7 +179,7 @@ mod tests {
         // Frame 4 is missing: frame 3 remains.
         timeline.tick(10.041, true);
         assert_eq!(timeline.current(), 3);
-        timeline.speed = 0.5;
+        timeline.time_scale = 0.5;
         timeline.tick(10.061, true);
         assert_eq!(timeline.current(), 3);
         timeline.tick(10.081, true);
@@ -261,7 +261,7 @@ mod tests {
     fn the_next_frame_is_due_after_its_distance_over_the_speed() {
         let mut timeline = timeline();
         timeline.seek(3);
-        timeline.speed = 2.0;
+        timeline.time_scale = 2.0;
         assert!((timeline.until_next() - 0.02).abs() < 1e-9, "{}", timeline.until_next());
     }
 }

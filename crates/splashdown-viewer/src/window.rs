@@ -8,8 +8,9 @@ use splashdown::scene::Scene;
 use splashdown_gpu::{DeviceRequest, Gpu, MISSING_DRIVER_HINT};
 use splashdown_run::RunFrames;
 
+use crate::app::title;
 use crate::engine::Simulate;
-use crate::{Viewer, ViewerError};
+use crate::{Viewer, ViewerError, opening};
 
 /// What the window shows first.
 pub enum Start {
@@ -51,7 +52,7 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
         return Err(ViewerError::NoDisplay);
     }
     let ViewOptions { start, device, simulate, size } = options;
-    let title = format!("Splashdown - {}", scene.name);
+    let title = title(&scene.name);
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_inner_size(size)
@@ -69,7 +70,7 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
                 let source = scene.source.clone();
                 let mut viewer = Viewer::new(&context.egui_ctx, render_state, scene, simulate)?;
                 if let Some(source) = source {
-                    viewer.remember(&source, 0.0);
+                    viewer.remember(&source, None, 0.0);
                 }
                 Ok(viewer)
             }
@@ -80,9 +81,9 @@ pub fn view(options: ViewOptions) -> Result<(), ViewerError> {
             }
             Start::Run(run) => {
                 let mut viewer = Viewer::idle(&context.egui_ctx, render_state, scene, simulate)?;
-                let folder = run.folder().to_owned();
+                let (folder, given) = (run.folder().to_owned(), opening::given_scene(&run));
                 viewer.play(run, &context.egui_ctx).map_err(no_window)?;
-                viewer.remember(&folder, 0.0);
+                viewer.remember(&folder, given.as_deref(), 0.0);
                 Ok(viewer)
             }
         }

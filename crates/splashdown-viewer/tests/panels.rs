@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use glam::Vec3;
 use splashdown::scene::{ColourBy, Method, Scene, presets};
 use splashdown_viewer::items::Item;
@@ -63,17 +63,18 @@ fn buttons_request_their_actions() {
     for (path, action) in [
         (&["Pause"][..], Action::Play(false)),
         (&["Step"], Action::Step),
-        (&["Reset"], Action::Reset),
+        (&["Restart"], Action::Restart),
         (&["Scenes"], Action::ShowFiles),
         (&["More", "Discard changes"], Action::DiscardChanges),
-        (&["More", "Export picture"], Action::Screenshot),
-        (&["More", "Export scene"], Action::SaveScene),
-        (&["More", "Export mesh"], Action::SaveMesh),
-        (&["More", "Export checkpoint"], Action::SaveCheckpoint),
+        (&["More", "Save scene"], Action::SaveScene),
+        (&["More", "Export picture"], Action::ExportPicture),
+        (&["More", "Export surface"], Action::ExportSurface),
+        (&["More", "Export checkpoint"], Action::ExportCheckpoint),
         (&["More", "Export film"], Action::Record),
         (&["More", "Light or dark"], Action::SwapTheme),
-        (&["Settings", "Drop a ball"], Action::DropBall),
-        (&["Open the tap"], Action::Pour),
+        (&["Settings", "Add ball"], Action::Change),
+        (&["Add emitter"], Action::Change),
+        (&["Remove emitter"], Action::Change),
     ] {
         click(&mut window, path);
         assert_eq!(actions(&mut window), [action], "{path:?}");
@@ -87,8 +88,12 @@ fn buttons_request_their_actions() {
     assert_eq!(window.state().0.look.colour_by, ColourBy::Density);
 }
 
-/// The sizes at which the window must be usable: a usual one, a small screen, and a phone.
-const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [1024.0, 640.0], [390.0, 844.0]];
+/// The sizes at which the window must be usable: a usual one, a small screen, a phone, a narrow window, and phones that are
+/// held across.
+const SIZES: [[f32; 2]; 6] =
+    [[1280.0, 800.0], [1024.0, 640.0], [390.0, 844.0], [520.0, 700.0], [844.0, 390.0], [667.0, 375.0]];
+/// The sizes at which controls are large enough for fingers.
+const TOUCH: [[f32; 2]; 4] = [SIZES[2], SIZES[3], SIZES[4], SIZES[5]];
 
 #[test]
 fn dialogs_do_not_cover_the_toolbar_or_the_status_line() {
@@ -130,15 +135,18 @@ fn the_toolbar_and_the_status_line_have_one_row_at_every_size() {
         let picture = window.state().2;
         // The harness has a margin of eight points.
         let (toolbar, status) = (picture.top() - 8.0, size[1] - 8.0 - picture.bottom());
-        assert!(toolbar < 32.0 && status < 30.0, "{size:?}: {picture:?}");
+        let is_touch = TOUCH.contains(&size);
+        assert!(toolbar < if is_touch { 44.0 } else { 32.0 } && status < 30.0, "{size:?}: {picture:?}");
         assert_eq!(picture.width(), size[0] - 16.0);
         // Every button of the toolbar is inside the window, and none covers another.
-        let names = ["Scenes", "Pause", "Step", "Reset", "Tool", "View", "Settings", "More"];
+        let names = ["Scenes", "Pause", "Step", "Restart", "Tool", "View", "Settings", "More"];
         let rects = names.map(|name| window.get_by_role_and_label(Role::Button, name).rect());
         for pair in rects.windows(2) {
             assert!(pair[0].right() <= pair[1].left(), "{size:?}: {rects:?}");
         }
         assert!(rects[7].right() <= size[0], "{size:?}: {rects:?}");
+        let height = rects.iter().map(|rect| rect.height()).fold(f32::INFINITY, f32::min);
+        assert_eq!(height >= 32.0, is_touch, "{size:?}: {height}");
         // The picture stays where it is when the numbers change.
         window.state_mut().0.figures = splashdown_viewer::state::Figures::default();
         window.run_steps(3);
@@ -206,7 +214,7 @@ fn a_played_run_cannot_be_changed() {
     }
     window.key_press_modifiers(Modifiers::COMMAND, Key::S);
     assert_eq!(actions(&mut window), []);
-    assert!(window.query_by_label("Reset").is_none() && window.query_by_label("Tool").is_none());
+    assert!(window.query_by_label("Restart").is_none() && window.query_by_label("Tool").is_none());
     // A view for which the run has no files.
     let mode = window.state().0.look.mode;
     click(&mut window, &["View", "Particles"]);
@@ -215,7 +223,7 @@ fn a_played_run_cannot_be_changed() {
     window.state_mut().0.timeline = None;
     window.run_steps(3);
     window.key_press(Key::R);
-    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!(actions(&mut window), [Action::Restart]);
 }
 
 #[test]
@@ -255,11 +263,12 @@ fn keys_request_the_actions_in_the_help() {
     for (key, action) in [
         (Key::Space, Action::Play(false)),
         (Key::Period, Action::Step),
-        (Key::R, Action::Reset),
-        (Key::B, Action::DropBall),
-        (Key::P, Action::Pour),
-        (Key::T, Action::Screenshot),
-        (Key::M, Action::SaveMesh),
+        (Key::R, Action::Restart),
+        (Key::B, Action::Change),
+        (Key::P, Action::Change),
+        (Key::T, Action::ExportPicture),
+        (Key::M, Action::ExportSurface),
+        (Key::K, Action::ExportCheckpoint),
     ] {
         window.key_press(key);
         assert_eq!(actions(&mut window), [action], "{key:?}");
@@ -267,10 +276,10 @@ fn keys_request_the_actions_in_the_help() {
     window.key_press_modifiers(Modifiers::COMMAND, Key::S);
     assert_eq!(actions(&mut window), [Action::SaveScene]);
     // The help opens and closes, and lists the keys above.
-    assert!(window.query_by_label("drop a ball").is_none());
+    assert!(window.query_by_label("add a ball").is_none());
     window.key_press(Key::H);
     window.run_steps(3);
-    assert!(window.query_by_label("drop a ball").is_some());
+    assert!(window.query_by_label("add a ball").is_some());
     window.key_press(Key::Escape);
     window.run_steps(3);
     assert!(!window.state().0.shown.help);
@@ -300,7 +309,7 @@ fn changing_the_solver_changes_its_models() {
 }
 
 #[test]
-fn dragging_orbits_the_camera_or_moves_the_water() {
+fn dragging_orbits_the_camera_or_moves_the_fluid() {
     let mut window = wide();
     let drag = |window: &mut Harness<'_, Both>| {
         window.drag_at(egui::pos2(300.0, 300.0));
@@ -330,17 +339,17 @@ fn dragging_orbits_the_camera_or_moves_the_water() {
     assert!(velocity.dot(after.axes()[0]) > 0.0, "{velocity}");
     window.drop_at(egui::pos2(360.0, 320.0));
     assert!(actions(&mut window).contains(&Action::Release));
-    assert_eq!(window.state().0.orbit, after, "dragging water moved the camera");
+    assert_eq!(window.state().0.orbit, after, "dragging the fluid moved the camera");
 }
 
 #[test]
 fn settings_open_over_the_picture_and_do_not_move_it() {
     for size in SIZES {
         let mut window = window(size);
-        assert!(window.query_by_label("Drop a ball").is_none());
+        assert!(window.query_by_label("Add ball").is_none());
         let before = window.state().2;
         click(&mut window, &["Settings"]);
-        assert!(window.query_by_label("Drop a ball").is_some(), "{size:?}");
+        assert!(window.query_by_label("Add ball").is_some(), "{size:?}");
         assert_eq!(window.state().2, before);
     }
 }
@@ -358,8 +367,276 @@ fn errors_remain_and_messages_disappear() {
     assert!(window.query_by_label("nothing is left").is_none());
 }
 
+/// Every text that the window shows, except tooltips.
+fn texts(window: &Harness<'_, Both>) -> Vec<String> {
+    let nodes = window.root().children_recursive();
+    nodes.filter_map(|node| node.accesskit_node().label()).collect()
+}
+
+/// Words that the guide replaces by others, of `texts`.
+fn replaced_words(texts: &[String]) -> Vec<&str> {
+    let has = |text: &&String, wanted: &str| {
+        text.split(|c: char| !c.is_alphabetic()).any(|word| word.eq_ignore_ascii_case(wanted))
+    };
+    let replaced = ["liquid", "tap", "resume", "advance", "reset", "delete"];
+    let is_wrong = |text: &&String| replaced.iter().any(|word| has(text, word));
+    // The camera is reset, and Delete is a key.
+    let is_exempt = |text: &&String| has(text, "camera") || text.as_str() == "Delete";
+    texts.iter().filter(is_wrong).filter(|text| !is_exempt(text)).map(String::as_str).collect()
+}
+
 #[test]
-fn a_scene_without_water_at_the_start_keeps_its_spacing() {
+fn the_window_has_one_word_for_each_concept() {
+    let mut window = window([1280.0, 1600.0]);
+    let mut shown = Vec::new();
+    click(&mut window, &["Tool", "Edit"]);
+    click(&mut window, &["Settings"]);
+    window.key_press(Key::H);
+    window.run_steps(3);
+    shown.extend(texts(&window));
+    for menu in ["More", "View", "Tool"] {
+        click(&mut window, &[menu]);
+        shown.extend(texts(&window));
+        click(&mut window, &[menu]);
+    }
+    for text in ["Add emitter", "Save scene", "Export surface", "Reset camera", "Smooth", "Display"] {
+        assert!(shown.iter().any(|shown| shown.contains(text)), "{text} in {shown:?}");
+    }
+    assert_eq!(replaced_words(&shown), [""; 0]);
+    // Control.
+    let wrong = ["Open the tap", "R: reset", "tapestry", "Reset camera"].map(str::to_owned);
+    assert_eq!(replaced_words(&wrong), ["Open the tap", "R: reset"]);
+}
+
+/// The place of the area with this name.
+fn area(window: &Harness<'_, Both>, name: &str) -> egui::Rect {
+    window.ctx.memory(|memory| memory.area_rect(egui::Id::unique(name))).unwrap()
+}
+
+#[test]
+fn notes_cover_neither_dialogs_nor_the_toolbar() {
+    for size in SIZES {
+        for title in ["Scenes", "Settings", "Help", "Edit"] {
+            let mut window = window(size);
+            let state = &mut window.state_mut().0;
+            match title {
+                "Scenes" => state.shown.gallery = true,
+                "Settings" => state.shown.settings = true,
+                "Help" => state.shown.help = true,
+                _ => (state.tool, state.playing) = (Tool::Edit, false),
+            }
+            window.run_steps(6);
+            let before = (area(&window, title), window.state().2);
+            // Control: a dialog without a note may reach to where notes are.
+            let long = "the scene cannot be used, for a reason of many words. ".repeat(20);
+            for text in ["the scene was saved to a.toml", long.as_str(), "another error"] {
+                window.state_mut().0.notify(text, text != "the scene was saved to a.toml", 0.0);
+            }
+            window.run_steps(6);
+            let [notes, dialog] = ["notes", title].map(|name| area(&window, name));
+            let picture = window.state().2;
+            assert_eq!(picture, before.1, "{title} at {size:?}");
+            assert!(picture.contains_rect(notes), "{title} at {size:?}: {notes:?} outside {picture:?}");
+            assert!(notes.height() <= 0.5 * picture.height(), "{title} at {size:?}: {notes:?}");
+            assert!(!notes.intersects(dialog), "{title} at {size:?}: {notes:?} covers {dialog:?}");
+            assert!(picture.contains_rect(dialog), "{title} at {size:?}: {dialog:?} outside {picture:?}");
+        }
+    }
+}
+
+#[test]
+fn a_refused_change_is_one_sentence_and_leaves_the_dialog_usable() {
+    let mut window = wide();
+    let (name, text) = presets().iter().find(|(name, _)| *name == "dam-break-small").unwrap();
+    window.state_mut().0.open(Scene::parse(text, name).unwrap());
+    click(&mut window, &["Tool", "Edit"]);
+    assert_eq!(actions(&mut window), [Action::Restart]);
+    window.state_mut().0.selected = Some(Item::Block(0));
+    window.run_steps(2);
+    click(&mut window, &["Remove"]);
+    assert_eq!(actions(&mut window), []);
+    let state = &window.state().0;
+    assert_eq!((state.scene.fluid.blocks.len(), state.notes.len()), (1, 1));
+    let text = state.notes[0].text.clone();
+    assert!(text.contains("needs fluid") && !text.contains(['\n', '^', '|']), "{text}");
+    // The dialog takes clicks as before.
+    click(&mut window, &["Add emitter"]);
+    assert_eq!(actions(&mut window), [Action::Restart]);
+    // Control: with the emitter, the block can be removed.
+    window.state_mut().0.selected = Some(Item::Block(0));
+    window.run_steps(2);
+    click(&mut window, &["Remove"]);
+    assert_eq!(actions(&mut window), [Action::Restart]);
+    assert!(window.state().0.scene.fluid.blocks.is_empty());
+}
+
+#[test]
+fn the_scenes_of_the_gallery_are_inside_their_dialog() {
+    for size in SIZES {
+        let mut window = window(size);
+        window.state_mut().0.shown.gallery = true;
+        window.run_steps(6);
+        let dialog = area(&window, "Scenes");
+        for (name, _) in presets() {
+            for tile in window.query_all_by_label(name).map(|node| node.rect()) {
+                assert!(
+                    tile.left() >= dialog.left() && tile.right() <= dialog.right(),
+                    "{name} at {size:?}: {tile:?} outside {dialog:?}"
+                );
+            }
+        }
+        let close = dialog.right_top() + vec2(-14.0, 14.0);
+        window.drag_at(close);
+        window.run_steps(1);
+        window.drop_at(close);
+        window.run_steps(3);
+        assert!(!window.state().0.shown.gallery, "the title bar at {size:?} ends before {dialog:?}");
+    }
+}
+
+#[test]
+fn the_timeline_fits_with_frames_that_are_left_out() {
+    for size in SIZES {
+        let mut window = played(size);
+        let timeline = window.state_mut().0.timeline.as_mut().unwrap();
+        for number in [3, 7, 8, 9] {
+            assert!(timeline.leave_out(number));
+        }
+        window.run_steps(3);
+        for label in ["4 left out", "Continue", "Loop", "Last frame"] {
+            let rect = window.get_by_label(label).rect();
+            assert!(rect.right() <= size[0] - 8.0, "{label} at {size:?}: {rect:?}");
+        }
+    }
+}
+
+#[test]
+fn a_run_without_a_checkpoint_cannot_be_continued() {
+    let mut window = played([1280.0, 800.0]);
+    window.state_mut().0.timeline.as_mut().unwrap().can_continue = false;
+    window.run_steps(2);
+    click(&mut window, &["Continue"]);
+    assert_eq!(actions(&mut window), []);
+    let button = window.get_by_role_and_label(Role::Button, "Continue").rect();
+    window.hover_at(button.center());
+    // A tooltip appears when the pointer rests.
+    window.run_steps(60);
+    assert!(window.query_by_label_contains("--checkpoint-every").is_some());
+}
+
+#[test]
+fn each_added_thing_is_one_step_of_undo() {
+    let mut window = wide();
+    click(&mut window, &["Tool", "Edit"]);
+    window.key_press(Key::B);
+    assert_eq!(actions(&mut window), [Action::Restart, Action::Restart]);
+    let bodies = |window: &Harness<'_, Both>| window.state().0.scene.bodies.clone();
+    let emitters = |window: &Harness<'_, Both>| window.state().0.scene.emitters.len();
+    let first = bodies(&window);
+    window.key_press(Key::P);
+    window.run_steps(2);
+    window.key_press(Key::B);
+    window.run_steps(2);
+    assert_eq!((bodies(&window).len(), emitters(&window)), (2, 1));
+    for (count, emitter_count) in [(1, 1), (1, 0), (0, 0)] {
+        window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        window.run_steps(2);
+        assert_eq!((bodies(&window).len(), emitters(&window)), (count, emitter_count));
+    }
+    window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    window.run_steps(2);
+    assert_eq!(bodies(&window), first);
+    // With another tool the simulation goes on, and the step is there later.
+    actions(&mut window);
+    window.state_mut().0.tool = Tool::Orbit;
+    window.key_press(Key::B);
+    assert_eq!(actions(&mut window), [Action::Change]);
+    click(&mut window, &["Tool", "Edit"]);
+    click(&mut window, &["Undo"]);
+    assert_eq!(bodies(&window), first);
+}
+
+/// The number of lines that the picture shows over the fluid: boxes and handles.
+fn lines(window: &Harness<'_, Both>) -> usize {
+    let picture = window.state().2;
+    let is_line = |shape: &&egui::epaint::ClippedShape| {
+        shape.clip_rect == picture && matches!(shape.shape, egui::Shape::LineSegment { .. })
+    };
+    window.output().shapes.iter().filter(is_line).count()
+}
+
+#[test]
+fn boxes_and_handles_are_shown_at_time_0_only() {
+    let mut window = wide();
+    click(&mut window, &["Tool", "Edit"]);
+    window.state_mut().0.selected = Some(Item::Block(0));
+    window.run_steps(2);
+    actions(&mut window);
+    assert!(lines(&window) >= 12, "{}", lines(&window));
+    window.key_press(Key::Space);
+    assert_eq!(actions(&mut window), [Action::Play(true)]);
+    // As the app does then.
+    (window.state_mut().0.playing, window.state_mut().0.figures.time) = (true, 0.25);
+    window.run_steps(2);
+    assert_eq!(lines(&window), 0);
+    // A handle cannot be grabbed, also while paused later.
+    window.state_mut().0.playing = false;
+    let (middle, offset, from) = handle(&window);
+    let (before, orbit) = (window.state().0.scene.clone(), window.state().0.orbit);
+    window.drag_at(from);
+    window.run_steps(1);
+    let to = seen(&window, middle + Vec3::X * (offset + 0.1));
+    for part in [0.5, 1.0] {
+        window.hover_at(from + part * (to - from));
+        window.run_steps(1);
+    }
+    window.drop_at(to);
+    window.run_steps(2);
+    assert_eq!(window.state().0.scene, before);
+    assert_ne!(window.state().0.orbit, orbit);
+    // The dialog leads back to time 0.
+    let dialog = area(&window, "Edit");
+    let back = window.query_all_by_label("Restart").find(|node| dialog.contains_rect(node.rect()));
+    back.unwrap().click();
+    assert_eq!(actions(&mut window), [Action::Restart]);
+    window.state_mut().0.figures.time = 0.0;
+    window.run_steps(2);
+    assert!(lines(&window) >= 12);
+}
+
+#[test]
+fn an_emitter_has_fields_for_direction_and_size() {
+    let mut window = wide();
+    click(&mut window, &["Tool", "Edit"]);
+    click(&mut window, &["Add emitter"]);
+    click(&mut window, &["Add emitter"]);
+    assert_eq!(window.state().0.scene.emitters.len(), 2);
+    assert_eq!(window.state().0.selected, Some(Item::Emitter(1)));
+    for label in ["position", "radius", "direction", "speed"] {
+        assert!(window.query_by_role_and_label(Role::Label, label).is_some(), "{label}");
+    }
+    // A drag of the first number of the direction turns the outflow, and its length remains 1.
+    actions(&mut window);
+    let row = window.get_by_role_and_label(Role::Label, "direction").rect();
+    let field = row.right_center() + vec2(24.0, 0.0);
+    window.drag_at(field);
+    for step in 1..=4 {
+        window.hover_at(field + vec2(10.0 * step as f32, 0.0));
+        window.run_steps(1);
+    }
+    window.drop_at(field + vec2(40.0, 0.0));
+    assert_eq!(actions(&mut window), [Action::Restart]);
+    let direction = window.state().0.scene.emitters[1].direction;
+    assert!(direction.x > 0.1 && direction.is_normalized(), "{direction}");
+    // Control: a block has none of them.
+    window.state_mut().0.selected = Some(Item::Block(0));
+    window.run_steps(2);
+    let has = |label: &str| window.query_by_role_and_label(Role::Label, label).is_some();
+    assert!(!has("direction") && (has("size") || has("radius")));
+}
+
+#[test]
+fn a_scene_without_fluid_at_the_start_keeps_its_spacing() {
     let text = presets().iter().find(|(name, _)| *name == "knot").unwrap().1;
     let state = State::new(Scene::parse(text, "knot").unwrap());
     let spacing = state.scene.fluid.particle_spacing;
@@ -370,28 +647,29 @@ fn a_scene_without_water_at_the_start_keeps_its_spacing() {
     drag_count(&mut window);
     assert_eq!(actions(&mut window), []);
     assert_eq!(window.state().0.scene.fluid.particle_spacing, spacing);
-    // Control: the slider works in a scene that starts with water.
+    // Control: the slider works in a scene that starts with fluid.
     let mut other = with_settings();
     drag_count(&mut other);
-    assert!(actions(&mut other).contains(&Action::Reset));
+    assert!(actions(&mut other).contains(&Action::Restart));
 }
 
 #[test]
-fn the_button_of_the_tap_follows_the_scene() {
+fn the_button_of_the_emitter_follows_the_scene() {
     let (name, text) = presets()[1];
     let emitter = |name: &str| {
         format!(
             "{text}\n[[emitter]]\nname = \"{name}\"\nradius = 0.1\nposition = [0.5, 0.5, 0.5]\ndirection = [0, -1, 0]\nspeed = 1\n"
         )
     };
-    for (emitter_name, is_open) in [("tap", true), ("inlet", false)] {
-        let mut state = State::new(Scene::parse(&emitter(emitter_name), name).unwrap());
-        assert_eq!(state.pouring, is_open, "{emitter_name}");
-        // A scene opened later, as from a checkpoint.
-        state.open(Scene::parse(text, name).unwrap());
-        assert!(!state.pouring);
-        state.open(Scene::parse(&emitter(emitter_name), name).unwrap());
-        assert_eq!(state.pouring, is_open, "{emitter_name}");
+    let mut window = with_settings();
+    for (emitter_name, is_added) in [("emitter-1", true), ("inlet", false)] {
+        for (text, is_removed) in [(emitter(emitter_name), is_added), (text.to_owned(), false)] {
+            // A scene opened later, as from a checkpoint.
+            window.state_mut().0.open(Scene::parse(&text, name).unwrap());
+            window.run_steps(3);
+            let found = ["Remove emitter", "Add emitter"].map(|label| window.query_by_label(label).is_some());
+            assert_eq!(found, [is_removed, !is_removed], "{emitter_name}");
+        }
     }
 }
 
@@ -425,7 +703,7 @@ fn click_at(window: &mut Harness<'_, Both>, at: egui::Pos2) {
 fn things_are_selected_moved_removed_and_restored() {
     let mut window = wide();
     click(&mut window, &["Tool", "Edit"]);
-    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!(actions(&mut window), [Action::Restart]);
     assert!(!window.state().0.playing);
     let shape = |window: &Harness<'_, Both>| window.state().0.scene.fluid.blocks[0].shape;
     let (before, orbit) = (shape(&window), window.state().0.orbit);
@@ -446,21 +724,21 @@ fn things_are_selected_moved_removed_and_restored() {
     assert!((moved - Vec3::X * 0.1).length() < 0.01, "{moved}");
     assert_eq!(window.state().1, [], "the simulation starts again during the move");
     window.drop_at(to);
-    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!(actions(&mut window), [Action::Restart]);
     assert_eq!(window.state().0.orbit, orbit, "moving a block moved the camera");
     let after = shape(&window);
     click(&mut window, &["Undo"]);
-    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Reset], before));
+    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Restart], before));
     window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Reset], after));
+    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Restart], after));
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Reset], before));
+    assert_eq!((actions(&mut window), shape(&window)), (vec![Action::Restart], before));
     // Added, removed by the key, and restored.
     click(&mut window, &["Add block"]);
-    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!(actions(&mut window), [Action::Restart]);
     assert_eq!(window.state().0.selected, Some(Item::Block(1)));
     window.key_press(Key::Delete);
-    assert_eq!(actions(&mut window), [Action::Reset]);
+    assert_eq!(actions(&mut window), [Action::Restart]);
     assert_eq!((window.state().0.scene.fluid.blocks.len(), window.state().0.selected), (1, None));
     click(&mut window, &["Undo"]);
     assert_eq!(window.state().0.scene.fluid.blocks.len(), 2);

@@ -4,10 +4,9 @@ use egui::Context;
 use splashdown::scene::{Scene, presets};
 
 use super::Viewer;
-use crate::edit;
 use crate::engine::{Command, Purpose};
-use crate::mouse;
 use crate::state::Action;
+use crate::{mouse, problem};
 
 impl Viewer {
     pub(super) fn act(&mut self, action: Action, ctx: &Context) {
@@ -21,10 +20,10 @@ impl Viewer {
                         #[cfg(target_arch = "wasm32")]
                         crate::browser::set_address(&format!("?scene={name}"));
                     }
-                    Err(error) => self.state.notify(error.to_string(), true, now),
+                    Err(errors) => self.state.notify(problem::of_file(&errors), true, now),
                 }
             }
-            Action::Reset => self.restart(),
+            Action::Restart => self.restart(),
             Action::Change => self.change(),
             Action::Play(playing) => {
                 self.state.playing = playing;
@@ -44,7 +43,7 @@ impl Viewer {
                         scene.source = source;
                         self.open(scene);
                     }
-                    Err(error) => self.state.notify(error.to_string(), true, now),
+                    Err(errors) => self.state.notify(problem::of_file(&errors), true, now),
                 }
             }
             Action::TimeScale => self.engine.send(Command::TimeScale(self.state.time_scale.into())),
@@ -61,25 +60,17 @@ impl Viewer {
                 grip.target = grip.target.clamp(domain.min, domain.max);
                 self.engine.send(Command::Grip(Some(grip)));
             }
-            Action::DropBall => {
-                edit::add_ball(&mut self.state.scene);
-                self.change();
-            }
-            Action::Pour => {
-                self.state.pouring = edit::turn_tap(&mut self.state.scene);
-                self.change();
-            }
-            Action::Screenshot => self.screenshot(now),
+            Action::ExportPicture => self.screenshot(now),
             Action::SaveScene => self.save_scene(now),
-            Action::SaveMesh => {
+            Action::ExportSurface => {
                 self.requested.exporting = true;
                 self.engine.send(Command::Export);
             }
-            Action::SaveCheckpoint => self.checkpoint(Purpose::Export, now),
+            Action::ExportCheckpoint => self.checkpoint(Purpose::Export, now),
             Action::Share => self.share(now),
             Action::Record => self.toggle_recording(now),
             #[cfg(not(target_arch = "wasm32"))]
-            Action::OpenFile(path) => self.want_file(&path, super::desktop::Purpose::Open),
+            Action::OpenFile { path, scene } => self.want_recent(path, scene),
             #[cfg(not(target_arch = "wasm32"))]
             Action::Ask(ask) => self.ask(ask, ctx),
             #[cfg(not(target_arch = "wasm32"))]
@@ -90,7 +81,7 @@ impl Viewer {
             Action::Continue => self.continue_run(),
             // A web page has no folders and no dialogs; files are dropped onto it.
             #[cfg(target_arch = "wasm32")]
-            Action::OpenFile(_)
+            Action::OpenFile { .. }
             | Action::Ask(_)
             | Action::ShowFiles
             | Action::ForgetRecent

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 
 use egui::Context;
 use glam::Vec3;
+use splashdown::scene::Scene;
 
 use super::Viewer;
 use crate::dialogs::Dialog;
 use crate::opening::{self, Contents, Resumable};
 use crate::recent::RecentFiles;
-use crate::state::{Ask, RecentFile, Tool};
+use crate::state::{Ask, RecentFile};
 use crate::task::Task;
 use crate::{edit, panels};
 
@@ -31,6 +32,21 @@ pub(super) enum Purpose {
     Continue,
 }
 
+/// A file to read.
+#[derive(Clone, Debug)]
+struct Wanted {
+    path: PathBuf,
+    /// The scene of a run that does not name it.
+    scene: Option<PathBuf>,
+    purpose: Purpose,
+}
+
+impl Wanted {
+    fn new(path: impl Into<PathBuf>, purpose: Purpose) -> Self {
+        Self { path: path.into(), scene: None, purpose }
+    }
+}
+
 /// The recent checkpoints, and the recent scenes and runs.
 type Listing = (Vec<PathBuf>, Result<Vec<RecentFile>, String>);
 
@@ -38,8 +54,8 @@ type Listing = (Vec<PathBuf>, Result<Vec<RecentFile>, String>);
 pub(super) struct Desktop {
     recent: RecentFiles,
     dialog: Option<Dialog>,
-    waiting: VecDeque<(PathBuf, Purpose)>,
-    reading: Option<(Task<Contents>, PathBuf, Purpose)>,
+    waiting: VecDeque<Wanted>,
+    reading: Option<(Task<Contents>, Wanted)>,
     listing: Option<Task<Listing>>,
 }
 
@@ -50,51 +66,52 @@ impl Desktop {
     }
 
     /// Reads a file after those that wait. What replaces the scene also replaces what was to be read.
-    fn want(&mut self, path: PathBuf, purpose: Purpose) {
-        let is_mesh = opening::is_mesh(&path);
-        if purpose == Purpose::Continue || (purpose == Purpose::Open && !is_mesh) {
+    fn want(&mut self, wanted: Wanted) {
+        let is_mesh = opening::is_mesh(&wanted.path);
+        if wanted.purpose == Purpose::Continue || (wanted.purpose == Purpose::Open && !is_mesh) {
             self.waiting.clear();
             self.reading = None;
         }
-        self.waiting.push_back((path, purpose));
+        self.waiting.push_back(wanted);
     }
 
     /// Starts to read the next file if none is being read; `read` runs on another thread. Returns what was read.
     fn update(
         &mut self,
-        read: fn(&Path, Purpose) -> Result<Contents, String>,
+        read: fn(&Wanted) -> Result<Contents, String>,
         repaint: impl FnOnce() + Send + 'static,
-    ) -> Option<(Result<Contents, String>, PathBuf, Purpose)> {
-        if let Some((task, path, purpose)) = self.reading.take() {
+    ) -> Option<(Result<Contents, String>, Wanted)> {
+        if let Some((task, wanted)) = self.reading.take() {
             match task.take() {
                 Some(contents) => {
                     // The next file is read after the next picture.
                     repaint();
-                    return Some((contents, path, purpose));
+                    return Some((contents, wanted));
                 }
-                None => self.reading = Some((task, path, purpose)),
+                None => self.reading = Some((task, wanted)),
             }
             return None;
         }
-        let (path, purpose) = self.waiting.pop_front()?;
-        let its = path.clone();
-        match Task::start("splashdown-open", move || read(&its, purpose), repaint) {
-            Ok(task) => self.reading = Some((task, path, purpose)),
-            Err(reason) => return Some((Err(reason), path, purpose)),
+        let wanted = self.waiting.pop_front()?;
+        let its = wanted.clone();
+        match Task::start("splashdown-open", move || read(&its), repaint) {
+            Ok(task) => self.reading = Some((task, wanted)),
+            Err(reason) => return Some((Err(reason), wanted)),
         }
         None
     }
 
     /// The name of the file that is being read.
     fn reading(&self) -> Option<String> {
-        let (path, _) = self.reading.as_ref().map(|(_, path, purpose)| (path, purpose))?;
+        let path = self.reading.as_ref().map(|(_, wanted)| &wanted.path)?;
         Some(path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned())
     }
 }
 
-fn read(path: &Path, purpose: Purpose) -> Result<Contents, String> {
-    match purpose {
-        Purpose::Open => opening::read(path),
+fn read(wanted: &Wanted) -> Result<Contents, String> {
+    let path = &wanted.path;
+    match wanted.purpose {
+        Purpose::Open => opening::read(path, wanted.scene.as_deref()),
         Purpose::Body | Purpose::Fluid => opening::mesh(path),
         Purpose::Continue => opening::newest_checkpoint(path),
     }
@@ -103,7 +120,12 @@ fn read(path: &Path, purpose: Purpose) -> Result<Contents, String> {
 impl Viewer {
     /// Starts to read a file; what it contains is used when it has been read.
     pub(super) fn want_file(&mut self, path: &Path, purpose: Purpose) {
-        self.desktop.want(path.to_owned(), purpose);
+        self.desktop.want(Wanted::new(path, purpose));
+    }
+
+    /// Starts to read a recent file. `scene` is that of a run that does not name it.
+    pub(super) fn want_recent(&mut self, path: PathBuf, scene: Option<PathBuf>) {
+        self.desktop.want(Wanted { path, scene, purpose: Purpose::Open });
     }
 
     /// Uses what has been read, chosen and listed since the last picture.
@@ -130,11 +152,13 @@ impl Viewer {
             });
         }
         let repaint = ctx.clone();
-        if let Some((contents, path, purpose)) = self.desktop.update(read, move || repaint.request_repaint())
-        {
+        if let Some((contents, wanted)) = self.desktop.update(read, move || repaint.request_repaint()) {
+            let Wanted { path, scene, purpose } = wanted;
             let used = contents.and_then(|contents| self.use_contents(contents, purpose, ctx));
             match used {
-                Ok(()) if purpose == Purpose::Open && !opening::is_mesh(&path) => self.remember(&path, now),
+                Ok(()) if purpose == Purpose::Open && !opening::is_mesh(&path) => {
+                    self.remember(&path, scene.as_deref(), now);
+                }
                 Ok(()) => {}
                 Err(reason) if purpose == Purpose::Continue => {
                     self.state.notify(format!("the run cannot be continued: {reason}"), true, now);
@@ -160,7 +184,7 @@ impl Viewer {
                 }
             }
             Contents::Mesh(..) if self.state.timeline.is_some() => {
-                let text = "a run that is played cannot be changed; continue it, or open a scene first";
+                let text = "a run that is played cannot be changed. Continue it, or open a scene first";
                 return Err(text.to_owned());
             }
             Contents::Mesh(path, bounds) => self.add_mesh(path, bounds, purpose, ctx),
@@ -169,21 +193,17 @@ impl Viewer {
     }
 
     fn add_mesh(&mut self, path: PathBuf, bounds: [Vec3; 2], purpose: Purpose, ctx: &Context) {
-        let before = self.state.scene.clone();
-        let is_fluid = purpose == Purpose::Fluid;
-        match is_fluid {
-            true => edit::add_fluid_mesh(&mut self.state.scene, path, bounds),
-            false => edit::add_mesh(&mut self.state.scene, path, bounds),
-        }
+        let (now, mut actions) = (ctx.input(|input| input.time), Vec::new());
+        let add = |scene: &mut Scene| match purpose {
+            Purpose::Fluid => edit::add_fluid_mesh(scene, path, bounds),
+            _ => edit::add_mesh(scene, path, bounds),
+        };
         // Fluid is added at time 0, as everything is with the tool Edit.
-        if is_fluid || self.state.tool == Tool::Edit {
-            let mut actions = Vec::new();
-            let now = ctx.input(|input| input.time);
-            panels::finish_edit(&mut self.state, before, &mut actions, now);
-            actions.into_iter().for_each(|action| self.act(action, ctx));
-        } else {
-            self.change();
+        match purpose {
+            Purpose::Fluid => panels::change_at_start(&mut self.state, &mut actions, now, add),
+            _ => panels::change_things(&mut self.state, &mut actions, now, add),
         }
+        actions.into_iter().for_each(|action| self.act(action, ctx));
     }
 
     /// Opens a dialog of the desktop, unless one is open.
@@ -213,9 +233,9 @@ impl Viewer {
         self.desktop.listing = Task::start("splashdown-files", list, move || repaint.request_repaint()).ok();
     }
 
-    /// Puts a file in front of the recent ones.
-    pub(crate) fn remember(&mut self, path: &Path, now: f64) {
-        if let Err(note) = self.desktop.recent.add(path) {
+    /// Puts a file in front of the recent ones, with the scene of a run that does not name it.
+    pub(crate) fn remember(&mut self, path: &Path, scene: Option<&Path>, now: f64) {
+        if let Err(note) = self.desktop.recent.add(path, scene) {
             self.state.notify(note, false, now);
         }
     }
@@ -253,9 +273,9 @@ mod tests {
     /// Held while the "disk" is slow.
     static DISK: Mutex<()> = Mutex::new(());
 
-    fn slow(path: &Path, _: Purpose) -> Result<Contents, String> {
+    fn slow(wanted: &Wanted) -> Result<Contents, String> {
         drop(DISK.lock());
-        Err(path.display().to_string())
+        Err(wanted.path.display().to_string())
     }
 
     /// The names that are read until nothing remains.
@@ -272,15 +292,15 @@ mod tests {
     fn the_window_does_not_wait_for_a_slow_file() {
         let mut desktop = Desktop::new();
         let busy = DISK.lock().unwrap();
-        desktop.want("run".into(), Purpose::Open);
+        desktop.want(Wanted::new("run", Purpose::Open));
         // If the file were read here, this call would never return.
         assert!(desktop.update(slow, || {}).is_none() && desktop.update(slow, || {}).is_none());
         assert_eq!(desktop.reading(), Some("run".to_owned()));
         // Meshes wait for it; another scene replaces all of them.
-        desktop.want("a.obj".into(), Purpose::Open);
-        desktop.want("b.toml".into(), Purpose::Open);
-        desktop.want("c.obj".into(), Purpose::Open);
-        desktop.want("d.stl".into(), Purpose::Fluid);
+        desktop.want(Wanted::new("a.obj", Purpose::Open));
+        desktop.want(Wanted::new("b.toml", Purpose::Open));
+        desktop.want(Wanted::new("c.obj", Purpose::Open));
+        desktop.want(Wanted::new("d.stl", Purpose::Fluid));
         drop(busy);
         assert_eq!(rest(&mut desktop), ["b.toml", "c.obj", "d.stl"]);
         assert_eq!(desktop.reading(), None);

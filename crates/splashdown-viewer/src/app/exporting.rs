@@ -26,7 +26,7 @@ impl Viewer {
         self.draw_full_size();
         let Some((texture, size)) = self.picture.texture_drawn() else { return };
         let (gpu, name) = (Arc::clone(&self.gpu), format!("{}.png", self.state.scene.name));
-        self.state.notify(format!("the picture was written to your downloads, as {name}"), false, now);
+        self.state.notify(format!("the picture was exported to your downloads, as {name}"), false, now);
         wasm_bindgen_futures::spawn_local(async move {
             if let Some(rgba) = pixels::read(gpu, texture, size).await {
                 // The notification is already shown; the browser reports failures.
@@ -51,7 +51,7 @@ impl Viewer {
         let name = name.to_string_lossy().into_owned();
         let exported =
             save::scene(&self.state.scene, &self.state.orbit).and_then(|text| export::text(&name, &text));
-        self.report_export("the scene", exported, now);
+        self.report_file("the scene", "saved", exported, now);
     }
 
     /// Writes the scene into a file that the user has chosen, also in place of an existing one: the dialog has asked.
@@ -64,9 +64,9 @@ impl Viewer {
             .and_then(|text| save::moved_to(&text, &self.state.scene, &path));
         let exported = text.and_then(|text| export::replace(&path, text.as_bytes()));
         if exported.is_ok() {
-            self.remember(&path, now);
+            self.remember(&path, None, now);
         }
-        self.report_export("the scene", exported, now);
+        self.report_file("the scene", "saved", exported, now);
     }
 
     /// Requests a checkpoint from the engine.
@@ -119,14 +119,18 @@ impl Viewer {
         #[cfg(not(target_arch = "wasm32"))]
         {
             drop(text);
-            self.state.notify("links exist on the web page only: export the scene as a file", true, now);
+            self.state.notify("links exist on the web page only: save the scene as a file", true, now);
         }
     }
 
     pub(super) fn report_export(&mut self, what: &str, exported: Result<String, String>, now: f64) {
-        match exported {
-            Ok(path) => self.state.notify(format!("{what} was written to {path}"), false, now),
-            Err(reason) => self.state.notify(format!("{what} was not written: {reason}"), true, now),
+        self.report_file(what, "exported", exported, now);
+    }
+
+    fn report_file(&mut self, what: &str, done: &str, outcome: Result<String, String>, now: f64) {
+        match outcome {
+            Ok(path) => self.state.notify(format!("{what} was {done} to {path}"), false, now),
+            Err(reason) => self.state.notify(format!("{what} was not {done}: {reason}"), true, now),
         }
     }
 

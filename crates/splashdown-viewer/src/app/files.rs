@@ -78,5 +78,5 @@ impl Viewer {
 #[cfg(target_arch = "wasm32")]
 fn open_scene(path: &Path, bytes: &[u8]) -> Result<Scene, String> {
     let text = std::str::from_utf8(bytes).map_err(|error| format!("it is not text: {error}"))?;
-    Scene::parse(text, &path.display().to_string()).map_err(|error| error.to_string())
+    Scene::parse(text, &path.display().to_string()).map_err(|errors| crate::problem::of_scene(&errors))
 }

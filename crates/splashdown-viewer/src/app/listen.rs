@@ -10,7 +10,7 @@ use splashdown_gpu::GpuError;
 use super::Viewer;
 use crate::engine::{Command, Message, Purpose};
 use crate::state::Tool;
-use crate::{edit, export, pick};
+use crate::{export, pick};
 
 impl Viewer {
     /// Requests the data that the display mode needs.
@@ -59,7 +59,7 @@ impl Viewer {
                     if std::mem::take(&mut self.requested.exporting) {
                         let name = format!("{}.ply", self.state.scene.name);
                         let exported = export::mesh(&name, &mesh);
-                        self.report_export("the mesh", exported, now);
+                        self.report_export("the surface", exported, now);
                     }
                 }
             }
@@ -75,7 +75,6 @@ impl Viewer {
         // A run that is played has its own figures.
         let Some(snapshot) = self.engine.snapshot().filter(|_| self.state.timeline.is_none()) else { return };
         let figures = &mut self.state.figures;
-        figures.frames_per_second = self.requested.frames_per_second;
         figures.steps_per_second = snapshot.steps_per_second;
         figures.speed = snapshot.speed;
         figures.time = snapshot.stats.time;
@@ -100,8 +99,8 @@ impl Viewer {
     fn revert_edits(&mut self) {
         if let Some(snapshot) = self.engine.snapshot().filter(|_| self.state.timeline.is_none()) {
             self.state.scene = snapshot.opened.scene.clone();
+            self.state.history.forget_repeated(&self.state.scene);
             self.state.count();
-            self.state.pouring = edit::has_tap(&self.state.scene);
         }
     }
 

@@ -8,6 +8,7 @@ mod files;
 mod listen;
 #[cfg(not(target_arch = "wasm32"))]
 mod playing;
+mod rate;
 #[cfg(not(target_arch = "wasm32"))]
 mod recording;
 
@@ -39,6 +40,7 @@ pub struct Viewer {
     texture: Option<TextureId>,
     state: State,
     requested: Requested,
+    rate: rate::PictureRate,
     drawn: Option<PictureContent>,
     /// A recent checkpoint, in case the device is lost.
     rescue: Option<Box<Checkpoint>>,
@@ -67,17 +69,18 @@ impl PictureContent {
     }
 }
 
-/// What was requested from the engine, and the rate of pictures.
+/// What was requested from the engine and from the window.
 #[derive(Default)]
 struct Requested {
     wants_surface: bool,
     wants_timing: bool,
-    frames_per_second: f32,
     /// When the last picture was shown, in s of the window's clock.
     shown_at: f64,
     exporting: bool,
     /// When a backup was last requested, in s of the window's clock.
     rescue_requested: f64,
+    /// The name of the scene in the title of the window.
+    title: String,
     /// The caption whose characters were checked.
     caption: Option<String>,
 }
@@ -124,6 +127,7 @@ impl Viewer {
             texture: None,
             state: State::new(scene),
             requested: Requested::default(),
+            rate: rate::PictureRate::default(),
             drawn: None,
             rescue: None,
             size: [1, 1],
@@ -147,6 +151,7 @@ impl Viewer {
             self.update_player(&ctx);
         }
         self.note_caption(&ctx);
+        self.name_window(&ctx);
         let (viewport, actions) = panels::show(ui, &mut self.state, self.texture);
         for action in actions {
             self.act(action, &ctx);
@@ -168,11 +173,25 @@ impl Viewer {
         self.engine.picture_drawn();
         #[cfg(target_arch = "wasm32")]
         crate::browser::set_figures(self.state.figures.to_json());
-        let now = ctx.input(|input| input.time);
-        let passed = (now - std::mem::replace(&mut self.requested.shown_at, now)).max(1e-4) as f32;
-        self.requested.frames_per_second += 0.1 * (1.0 / passed - self.requested.frames_per_second);
+        self.requested.shown_at = ctx.input(|input| input.time);
+        self.state.figures.frames_per_second = self.rate.count(self.requested.shown_at, plays);
         if self.state.playing {
             ctx.request_repaint();
+        }
+    }
+
+    /// Shows the name of the scene in the title of the window, or of the page.
+    fn name_window(&mut self, ctx: &Context) {
+        if self.requested.title != self.state.scene.name {
+            self.requested.title.clone_from(&self.state.scene.name);
+            let title = title(&self.requested.title);
+            #[cfg(target_arch = "wasm32")]
+            {
+                let _ = ctx;
+                crate::browser::set_title(&title);
+            }
+            #[cfg(not(target_arch = "wasm32"))]
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
         }
     }
 
@@ -258,6 +277,11 @@ impl Viewer {
             None => self.texture = Some(renderer.register_native_texture(device, view, filter)),
         }
     }
+}
+
+/// The title of a window that shows this scene.
+pub(crate) fn title(scene: &str) -> String {
+    format!("Splashdown - {scene}")
 }
 
 impl eframe::App for Viewer {

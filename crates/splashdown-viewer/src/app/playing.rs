@@ -36,7 +36,7 @@ impl Viewer {
         if !timeline.has_particles && self.state.look.mode.needs_particles() {
             self.state.look.mode = DisplayMode::Surface;
         } else if !timeline.has_meshes && self.state.look.mode.needs_surface() {
-            self.state.look.mode = DisplayMode::Liquid;
+            self.state.look.mode = DisplayMode::Smooth;
         }
         self.state.timeline = Some(timeline);
         self.player = Some(Player { playback, opened: None, shown: None });
@@ -70,7 +70,6 @@ impl Viewer {
                 }
             }
         }
-        self.state.figures.frames_per_second = self.requested.frames_per_second;
         if timeline.playing {
             ctx.request_repaint_after(std::time::Duration::from_secs_f64(timeline.until_next().min(0.5)));
         }

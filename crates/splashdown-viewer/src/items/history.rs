@@ -22,6 +22,11 @@ impl History {
         }
     }
 
+    /// Forgets changes that were refused: the scene before them is the scene again.
+    pub fn forget_repeated(&mut self, now: &Scene) {
+        while self.past.pop_if(|before| before == now).is_some() {}
+    }
+
     /// The scene before the last change; `now` is restored by [`redo`](Self::redo).
     pub fn undo(&mut self, now: &Scene) -> Option<Scene> {
         let before = self.past.pop()?;
@@ -70,5 +75,19 @@ mod tests {
         scene.duration = 9.0;
         assert_eq!(history.redo(&scene), None);
         assert_eq!(history.undo(&scene).unwrap().duration, 2.0);
+    }
+
+    #[test]
+    fn a_refused_change_is_forgotten() {
+        let (name, text) = presets()[0];
+        let first = Scene::parse(text, name).unwrap();
+        let mut second = first.clone();
+        second.duration = 2.0;
+        let mut history = History::default();
+        history.record(first.clone());
+        history.record(second.clone());
+        history.forget_repeated(&second);
+        // Control: the change before remains.
+        assert_eq!(history.undo(&second), Some(first));
     }
 }

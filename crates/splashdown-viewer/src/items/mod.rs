@@ -1,6 +1,7 @@
 //! The things of a scene that can be selected, moved, rotated, resized and removed: blocks of fluid, meshes filled with
 //! fluid, bodies and emitters at time 0.
 
+mod decimal;
 mod handle;
 mod history;
 mod pose;
@@ -10,6 +11,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use splashdown::scene::{Block, Motion, Outlet, Scene, Shape};
 
+pub use decimal::{decimal, decimals};
 pub use handle::{Axis3, Grab, along, angle, handle_at, line_distance};
 pub use history::History;
 
@@ -84,45 +86,52 @@ impl Item {
             }
             Self::Emitter(index) => {
                 let emitter = scene.emitters.get(index)?;
-                let radius = match &emitter.outlet {
-                    Outlet::Disc { radius } => *radius,
-                    Outlet::Rectangle { size } => 0.5 * size[0].max(size[1]),
-                    Outlet::Mesh(_) => 3.0 * scene.fluid.particle_spacing,
+                let least = Vec3::splat(scene.fluid.particle_spacing);
+                let half = match &emitter.outlet {
+                    Outlet::Disc { radius } => *radius * across(emitter.direction),
+                    Outlet::Rectangle { size } => Vec3::splat(0.5 * size[0].max(size[1])),
+                    Outlet::Mesh(_) => 3.0 * least,
                 };
-                let half = Vec3::splat(radius.max(scene.fluid.particle_spacing));
+                let half = half.max(least);
                 Some((emitter.position - half, emitter.position + half))
             }
         }
     }
 
-    /// Moves it by an offset in m.
+    /// Moves it by an offset in m, to coordinates with few decimals.
     pub fn move_by(self, scene: &mut Scene, offset: Vec3) {
+        let spacing = scene.fluid.particle_spacing;
+        let by = |place: &mut Vec3| {
+            let moved = decimals(*place + offset, spacing);
+            // A coordinate that is not moved keeps its decimals.
+            *place = Vec3::select(offset.cmpeq(Vec3::ZERO), *place, moved);
+        };
         match self {
             Self::Block(index) => {
                 let block = scene.fluid.blocks.get_mut(index);
                 match block.map(|block| &mut block.shape) {
-                    Some(Shape::Box { min, .. }) => *min += offset,
-                    Some(Shape::Sphere { center, .. }) => *center += offset,
+                    Some(Shape::Box { min, .. }) => by(min),
+                    Some(Shape::Sphere { center, .. }) => by(center),
                     None => {}
                 }
             }
             Self::FluidMesh(index) => {
                 if let Some(filled) = scene.fluid.meshes.get_mut(index) {
-                    filled.mesh.position += offset;
+                    by(&mut filled.mesh.position);
                 }
             }
             Self::Body(index) => {
                 let Some(body) = scene.bodies.get_mut(index) else { return };
-                body.mesh.position += offset;
+                by(&mut body.mesh.position);
                 if let Motion::Dynamic { hinge: Some(hinge), .. } = &mut body.motion {
-                    hinge.point += offset;
+                    by(&mut hinge.point);
                 }
             }
             Self::Emitter(index) => {
                 let Some(emitter) = scene.emitters.get_mut(index) else { return };
-                emitter.position += offset;
+                by(&mut emitter.position);
                 if let Outlet::Mesh(mesh) = &mut emitter.outlet {
-                    mesh.position += offset;
+                    by(&mut mesh.position);
                 }
             }
         }
@@ -138,6 +147,11 @@ impl Item {
             Self::Emitter(index) => drop(scene.emitters.remove(index)),
         }
     }
+}
+
+/// Half the extent of a disc of radius 1 along each axis, perpendicular to a unit vector.
+fn across(direction: Vec3) -> Vec3 {
+    (Vec3::ONE - direction * direction).max(Vec3::ZERO).map(f32::sqrt)
 }
 
 /// The thing that a ray (a point in m and a unit vector) enters first.
@@ -157,9 +171,10 @@ fn enters((low, high): (Vec3, Vec3), (origin, direction): (Vec3, Vec3)) -> Optio
 /// Adds a block of fluid in the upper middle of the domain, on whole spacings.
 pub fn add_block(scene: &mut Scene) -> Item {
     let spacing = scene.fluid.particle_spacing;
-    let whole = |v: Vec3| spacing * (v / spacing).round();
+    let whole = |v: Vec3| decimals(spacing * (v / spacing).round(), spacing);
     let size = whole(0.25 * scene.domain.size()).max(Vec3::splat(2.0 * spacing));
     let min = scene.domain.min + whole(Vec3::new(0.375, 0.6, 0.375) * scene.domain.size());
+    let min = decimals(min, spacing);
     scene.fluid.blocks.push(Block { shape: Shape::Box { min, size }, velocity: Vec3::ZERO });
     Item::Block(scene.fluid.blocks.len() - 1)
 }
@@ -173,7 +188,7 @@ mod tests {
         let (name, text) = presets().iter().find(|(name, _)| *name == "double-dam-break").copied().unwrap();
         let mut scene = Scene::parse(text, name).unwrap();
         crate::edit::add_ball(&mut scene);
-        crate::edit::turn_tap(&mut scene);
+        crate::edit::add_emitter(&mut scene);
         scene
     }
 

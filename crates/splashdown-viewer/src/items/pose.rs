@@ -1,9 +1,9 @@
-//! Rotating and resizing.
+//! Rotating and resizing. Places and sizes get few decimals.
 
 use glam::{Quat, Vec3};
-use splashdown::scene::{Domain, MeshSource, Scene, Shape};
+use splashdown::scene::{Domain, Emitter, MeshSource, Outlet, Scene, Shape};
 
-use super::{Axis3, Item};
+use super::{Axis3, Item, decimal, decimals};
 
 impl Item {
     /// The mesh of a thing that is one.
@@ -23,18 +23,40 @@ impl Item {
         }
     }
 
-    /// Rotates a mesh about a point in m. Blocks and emitters have no rotation.
+    /// The emitter, if it is one.
+    pub fn emitter(self, scene: &Scene) -> Option<&Emitter> {
+        match self {
+            Self::Emitter(index) => scene.emitters.get(index),
+            Self::Block(_) | Self::FluidMesh(_) | Self::Body(_) => None,
+        }
+    }
+
+    /// Whether it can be rotated.
+    pub fn is_rotatable(self, scene: &Scene) -> bool {
+        self.mesh(scene).is_some() || self.emitter(scene).is_some_and(has_direction)
+    }
+
+    /// Rotates a mesh about a point in m, or an emitter about its centre. Blocks, and emitters with the cross-section of a
+    /// mesh, remain.
     pub fn rotate_by(self, scene: &mut Scene, rotation: Quat, about: Vec3) {
+        if let Self::Emitter(index) = self
+            && let Some(emitter) = scene.emitters.get_mut(index).filter(|emitter| has_direction(emitter))
+        {
+            emitter.direction = (rotation * emitter.direction).normalize_or(emitter.direction);
+            return;
+        }
+        let spacing = scene.fluid.particle_spacing;
         let Some(mesh) = self.mesh_mut(scene) else { return };
-        mesh.position = about + rotation * (mesh.position - about);
+        mesh.position = decimals(about + rotation * (mesh.position - about), spacing);
         mesh.rotation = (rotation * mesh.rotation).normalize();
     }
 
     /// Scales a mesh by a factor; a point in m stays where it is. Blocks and emitters have no scale.
     pub fn scale_by(self, scene: &mut Scene, factor: f32, about: Vec3) {
+        let spacing = scene.fluid.particle_spacing;
         let Some(mesh) = self.mesh_mut(scene) else { return };
-        mesh.position = about + factor * (mesh.position - about);
-        mesh.scale *= factor;
+        mesh.position = decimals(about + factor * (mesh.position - about), spacing);
+        mesh.scale = (factor * mesh.scale).map(|scale| decimal(scale, 0.01 * scale.abs()));
     }
 
     /// Moves a face of a block along its axis by an offset in m, inside the domain: that of the higher or the lower
@@ -50,19 +72,25 @@ impl Item {
                 if is_upper {
                     // A face that is outside the domain already can stay where it is.
                     let high = (high + offset).clamp(low + least, domain.max[i].max(high).max(low + least));
-                    size[i] = high - low;
+                    size[i] = decimal(high - low, least);
                 } else {
                     let low = (low + offset).clamp(domain.min[i].min(low).min(high - least), high - least);
-                    (min[i], size[i]) = (low, high - low);
+                    min[i] = decimal(low, least);
+                    size[i] = decimal(high - min[i], least);
                 }
             }
             Shape::Sphere { center, radius } => {
                 let outwards = if is_upper { offset } else { -offset };
                 let largest = room(&domain, *center).max(*radius).max(least);
-                *radius = (*radius + outwards).clamp(least, largest);
+                *radius = decimal((*radius + outwards).clamp(least, largest), least);
             }
         }
     }
+}
+
+/// Whether the direction of an emitter can change on its own. That of a mesh is the normal of its cross-section.
+fn has_direction(emitter: &Emitter) -> bool {
+    !matches!(emitter.outlet, Outlet::Mesh(_))
 }
 
 /// The distance from a point to the nearest side of the domain.
@@ -100,6 +128,30 @@ mod tests {
         Item::Block(0).rotate_by(&mut scene, Quat::from_rotation_x(1.0), about);
         Item::Block(0).scale_by(&mut scene, 3.0, about);
         assert_eq!(scene.fluid.blocks, blocks);
+    }
+
+    #[test]
+    fn an_emitter_turns_on_its_place() {
+        let mut scene = scene();
+        crate::edit::add_emitter(&mut scene);
+        let (item, place) = (Item::Emitter(0), scene.emitters[0].position);
+        assert!(item.is_rotatable(&scene) && !Item::Block(0).is_rotatable(&scene));
+        item.rotate_by(&mut scene, Quat::from_rotation_z(90_f32.to_radians()), Vec3::ZERO);
+        let emitter = &scene.emitters[0];
+        assert!((emitter.direction - Vec3::X).length() < 1e-6, "{emitter:?}");
+        assert_eq!(emitter.position, place);
+    }
+
+    #[test]
+    fn moved_and_resized_things_have_few_decimals() {
+        let mut scene = scene();
+        let item = Item::Block(0);
+        item.move_by(&mut scene, Vec3::new(0.1 + 0.26, 0.0, 0.0));
+        item.move_by(&mut scene, Vec3::new(0.7 - 0.34 - 0.36, 0.0, 1e-7));
+        item.resize(&mut scene, Axis3::Y, true, 0.1 - 0.24);
+        let (low, high) = scene.fluid.blocks[0].shape.bounds();
+        assert_eq!((low.x, low.z, high.y - low.y), (0.36, 0.0, 0.36), "{low} {high}");
+        assert_eq!(high.y.to_string(), "0.36");
     }
 
     #[test]

@@ -3,23 +3,29 @@
 
 use egui::{Context, Key, Modifiers, PointerButton, Pos2, Rect, Response, ScrollArea, Ui};
 use glam::{Quat, Vec2};
-use splashdown::scene::Scene;
 
+use super::change::{finish, redo, start_again, undo};
 use super::{add_mesh, dialog, fields, handles, icons};
+use crate::edit;
 use crate::items::{self, Item};
 use crate::state::{Action, Moving, State, Tool};
-use crate::{edit, save};
 
 /// Height of the fields and the buttons below the list, in points.
-const BUTTONS: f32 = 230.0;
+const BUTTONS: f32 = 260.0;
 
-/// The mouse in the picture.
+/// The mouse in the picture. Things are where they are drawn at time 0 only; later it orbits the camera.
 pub(super) fn interact(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec<Action>) {
     let rect = response.rect;
     let size = Vec2::new(rect.width(), rect.height());
     let local = |at: Pos2| Vec2::new(at.x - rect.left(), at.y - rect.top());
     state.selected = state.selected.filter(|item| item.is_in(&state.scene));
     let pressed = ui.input(|input| input.pointer.press_origin());
+    if !state.is_at_start() && state.moving.is_none() {
+        if response.dragged_by(PointerButton::Primary) {
+            orbit(response, state);
+        }
+        return;
+    }
     if response.drag_started_by(PointerButton::Primary)
         && let (Some(item), Some(at)) = (state.selected, pressed)
         && let Some(middle) = handles::middle(item, state)
@@ -38,16 +44,18 @@ pub(super) fn interact(ui: &Ui, response: &Response, state: &mut State, actions:
             state.moving = Some(moving);
         }
         (Some(moving), false) => finish(state, moving.before, actions, ui.input(|input| input.time)),
-        (None, true) => {
-            let drag = response.drag_delta();
-            state.orbit.orbit(Vec2::new(drag.x, drag.y));
-        }
+        (None, true) => orbit(response, state),
         (None, false) => {}
     }
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
         state.selected = items::hit(&state.scene, &state.body_bounds, state.orbit.ray(local(at), size));
     }
     handles::draw(&ui.painter_at(rect), rect, state);
+}
+
+fn orbit(response: &Response, state: &mut State) {
+    let drag = response.drag_delta();
+    state.orbit.orbit(Vec2::new(drag.x, drag.y));
 }
 
 /// The list of things, and the buttons.
@@ -62,62 +70,92 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, 
     keys(ctx, state, actions);
     let mut is_open = true;
     dialog::new("Edit", over).open(&mut is_open).resizable(false).default_width(150.0).show(ctx, |ui| {
-        let height = (dialog::inner_height(over) - BUTTONS).max(60.0);
+        let height = dialog::inner_height(over);
         ScrollArea::vertical().max_height(height).show(ui, |ui| {
-            for item in Item::all(&state.scene) {
-                let name = item.name(&state.scene);
-                if ui.selectable_label(state.selected == Some(item), name).clicked() {
-                    state.selected = Some(item);
-                }
+            if !state.is_at_start() {
+                moved_on(ui, state, actions);
+            }
+            list(ui, state, (height - BUTTONS).max(60.0));
+            ui.separator();
+            if let Some(before) = fields::show(ui, state) {
+                finish(state, before, actions, now);
+            }
+            add(ui, state, actions, now);
+            history(ui, state, actions, now);
+            if state.selected.is_some_and(|item| !item.is_movable(&state.scene)) {
+                ui.weak("A script moves this body.");
             }
         });
-        ui.separator();
-        if let Some(before) = fields::show(ui, state) {
-            finish(state, before, actions, now);
-        }
-        let before = state.scene.clone();
-        ui.horizontal(|ui| {
-            if ui.button("Add block").on_hover_text("A block of fluid").clicked() {
-                state.selected = Some(items::add_block(&mut state.scene));
-            }
-            if ui.button("Add ball").on_hover_text("A floating ball").clicked() {
-                edit::add_ball(&mut state.scene);
-                state.selected = Some(Item::Body(state.scene.bodies.len() - 1));
-            }
-            let can_add = !edit::has_tap(&state.scene);
-            let tap = ui.add_enabled(can_add, egui::Button::new("Add tap"));
-            if tap.on_hover_text("An emitter that points down").clicked() {
-                edit::turn_tap(&mut state.scene);
-                state.selected = Some(Item::Emitter(state.scene.emitters.len() - 1));
-            }
-        });
-        finish(state, before, actions, now);
-        ui.horizontal(|ui| {
-            add_mesh(ui, actions);
-        });
-        ui.horizontal(|ui| {
-            let (can_undo, can_redo) = state.history.can_undo_and_redo();
-            let is_selected = state.selected.is_some();
-            let mut button = |enabled: bool, icon: &str, name: &str, hint: &str| {
-                ui.add_enabled_ui(enabled, |ui| icons::button(ui, icon, name, hint).clicked()).inner
-            };
-            if button(is_selected, icons::REMOVE, "Remove", "The selected thing (Delete)") {
-                remove(state, actions, now);
-            }
-            if button(can_undo, icons::UNDO, "Undo", "Ctrl + Z") {
-                undo(state, actions);
-            }
-            if button(can_redo, icons::REDO, "Redo", "Ctrl + Shift + Z") {
-                redo(state, actions);
-            }
-        });
-        if state.selected.is_some_and(|item| !item.is_movable(&state.scene)) {
-            ui.weak("A script moves this body.");
-        }
     });
     if !is_open {
         state.tool = Tool::Orbit;
     }
+}
+
+/// The way back to time 0, where things are edited.
+fn moved_on(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.weak("Handles are shown at time 0.");
+        if ui
+            .button("Restart")
+            .on_hover_text("Pause at time 0. Each change of a thing does the same")
+            .clicked()
+        {
+            start_again(state, actions);
+        }
+    });
+}
+
+/// The things of the scene.
+fn list(ui: &mut Ui, state: &mut State, height: f32) {
+    ScrollArea::vertical().id_salt("things").max_height(height).show(ui, |ui| {
+        for item in Item::all(&state.scene) {
+            let name = item.name(&state.scene);
+            if ui.selectable_label(state.selected == Some(item), name).clicked() {
+                state.selected = Some(item);
+            }
+        }
+    });
+}
+
+/// The buttons that add things.
+fn add(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, now: f64) {
+    let before = state.scene.clone();
+    ui.horizontal(|ui| {
+        if ui.button("Add block").on_hover_text("A block of fluid").clicked() {
+            state.selected = Some(items::add_block(&mut state.scene));
+        }
+        if ui.button("Add ball").on_hover_text("A floating ball (B)").clicked() {
+            edit::add_ball(&mut state.scene);
+            state.selected = Some(Item::Body(state.scene.bodies.len() - 1));
+        }
+        if ui.button("Add emitter").on_hover_text("A source of fluid that points down").clicked() {
+            edit::add_emitter(&mut state.scene);
+            state.selected = Some(Item::Emitter(state.scene.emitters.len() - 1));
+        }
+    });
+    finish(state, before, actions, now);
+    ui.horizontal(|ui| add_mesh(ui, actions));
+}
+
+/// Removing, undoing and redoing.
+fn history(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, now: f64) {
+    ui.horizontal(|ui| {
+        let (can_undo, can_redo) = state.history.can_undo_and_redo();
+        let is_selected = state.selected.is_some();
+        let mut button = |enabled: bool, icon: &str, name: &str, hint: &str| {
+            ui.add_enabled_ui(enabled, |ui| icons::button(ui, icon, name, hint).clicked()).inner
+        };
+        if button(is_selected, icons::REMOVE, "Remove", "The selected thing (Delete)") {
+            remove(state, actions, now);
+        }
+        if button(can_undo, icons::UNDO, "Undo", "Ctrl + Z") {
+            undo(state, actions);
+        }
+        if button(can_redo, icons::REDO, "Redo", "Ctrl + Shift + Z") {
+            redo(state, actions);
+        }
+    });
 }
 
 fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
@@ -143,53 +181,4 @@ fn remove(state: &mut State, actions: &mut Vec<Action>, now: f64) {
     let before = state.scene.clone();
     item.remove(&mut state.scene);
     finish(state, before, actions, now);
-}
-
-fn undo(state: &mut State, actions: &mut Vec<Action>) {
-    if let Some(scene) = state.history.undo(&state.scene) {
-        restore(state, scene);
-        start_again(state, actions);
-    }
-}
-
-fn redo(state: &mut State, actions: &mut Vec<Action>) {
-    if let Some(scene) = state.history.redo(&state.scene) {
-        restore(state, scene);
-        start_again(state, actions);
-    }
-}
-
-/// Takes back what this tool changes, and nothing else: the settings remain.
-fn restore(state: &mut State, scene: Scene) {
-    state.scene.fluid.blocks = scene.fluid.blocks;
-    state.scene.fluid.meshes = scene.fluid.meshes;
-    state.scene.bodies = scene.bodies;
-    state.scene.emitters = scene.emitters;
-    state.scene.duration = scene.duration;
-}
-
-/// Ends a change of the scene. One that a scene file could not contain, such as a block outside the domain, is taken
-/// back with the reason. `now` is the time of the window's clock in s.
-pub fn finish(state: &mut State, before: Scene, actions: &mut Vec<Action>, now: f64) {
-    if state.scene == before {
-        return;
-    }
-    match save::scene(&state.scene, &state.orbit) {
-        Ok(_) => {
-            state.history.record(before);
-            start_again(state, actions);
-        }
-        Err(reason) => {
-            state.scene = before;
-            state.notify(reason, true, now);
-        }
-    }
-}
-
-/// Shows the scene at time 0.
-pub(super) fn start_again(state: &mut State, actions: &mut Vec<Action>) {
-    state.playing = false;
-    state.pouring = edit::has_tap(&state.scene);
-    state.count();
-    actions.push(Action::Reset);
 }

@@ -1,10 +1,10 @@
-//! The numbers of the selected thing in the tool Edit: position, size, rotation and scale.
+//! The numbers of the selected thing in the tool Edit: position, size, rotation and scale, and the outflow of an emitter.
 
 use std::ops::RangeInclusive;
 
 use egui::{DragValue, Grid, Response, Ui};
 use glam::{EulerRot, Quat, Vec3};
-use splashdown::scene::{Scene, Shape};
+use splashdown::scene::{Emitter, Outlet, Scene, Shape};
 
 use super::handles;
 use crate::items::Item;
@@ -43,6 +43,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State) -> Option<Scene> {
         Grid::new("fields").num_columns(4).spacing([4.0, 3.0]).show(ui, |ui| {
             position(ui, item, &mut state.scene, &mut changes);
             size(ui, item, &mut state.scene, &mut changes);
+            outflow(ui, item, &mut state.scene, &mut changes);
             pose(ui, item, &mut state.scene, pivot, &mut changes);
         });
         if changes.changed && state.typing.is_none() {
@@ -50,7 +51,16 @@ pub(super) fn show(ui: &mut Ui, state: &mut State) -> Option<Scene> {
         }
     }
     // Selecting another thing ends the change too.
-    state.typing.take_if(|_| !changes.is_active).map(|typing| typing.before)
+    let ended = state.typing.take_if(|_| !changes.is_active)?;
+    state.scene.emitters.iter_mut().for_each(normalise);
+    Some(ended.before)
+}
+
+/// Gives a direction that was typed its unit length.
+fn normalise(emitter: &mut Emitter) {
+    if !emitter.direction.is_normalized() {
+        emitter.direction = emitter.direction.normalize_or(Vec3::NEG_Y);
+    }
 }
 
 /// A row of numbers.
@@ -113,6 +123,36 @@ fn size(ui: &mut Ui, item: Item, scene: &mut Scene, changes: &mut Changes) {
             }
         }
     }
+}
+
+/// Outlet, direction and speed of an emitter.
+fn outflow(ui: &mut Ui, item: Item, scene: &mut Scene, changes: &mut Changes) {
+    let (least, speed) = (scene.fluid.particle_spacing, 0.002 * scene.domain.size().max_element());
+    let Item::Emitter(index) = item else { return };
+    let Some(emitter) = scene.emitters.get_mut(index) else { return };
+    let lengths = (speed, least..=FAR, 4);
+    match &mut emitter.outlet {
+        Outlet::Disc { radius } => {
+            row(ui, "radius", "Of the outlet, in m", std::slice::from_mut(radius), lengths, changes);
+        }
+        Outlet::Rectangle { size } => {
+            let hint = "Edges of the outlet in m: horizontal, and perpendicular to it";
+            row(ui, "size", hint, size, lengths, changes);
+        }
+        Outlet::Mesh(_) => {}
+    }
+    if item.is_rotatable(scene)
+        && let Some(emitter) = scene.emitters.get_mut(index)
+    {
+        let mut values = emitter.direction.to_array();
+        let hint = "Of the outflow: a vector, which gets the length 1";
+        if row(ui, "direction", hint, &mut values, (0.01, -1.0..=1.0, 3), changes) {
+            emitter.direction = Vec3::from(values);
+        }
+    }
+    let Some(emitter) = scene.emitters.get_mut(index) else { return };
+    let speeds = (0.01, 1e-3..=1e3, 3);
+    row(ui, "speed", "Of the outflow, in m/s", std::slice::from_mut(&mut emitter.speed), speeds, changes);
 }
 
 /// Rotation and scale of a mesh, about a point in m.

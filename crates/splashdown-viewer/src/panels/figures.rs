@@ -4,10 +4,11 @@ use egui::{Grid, Rect, RichText, ScrollArea, TextStyle, Ui};
 
 use super::dialog;
 use crate::state::{Figures, State};
+use crate::timeline::Timeline;
 
 /// One line at every width: the numbers that fit, the most important ones first.
 pub(super) fn show(ui: &mut Ui, state: &mut State) {
-    let items = items(&state.figures, state.timeline.is_some());
+    let items = items(&state.figures, state.timeline.as_ref());
     ui.horizontal(|ui| {
         let (font, colour) = (TextStyle::Monospace.resolve(ui.style()), ui.visuals().text_color());
         let mut left = ui.available_width();
@@ -24,19 +25,22 @@ pub(super) fn show(ui: &mut Ui, state: &mut State) {
 }
 
 /// The numbers with their explanations. Their widths do not change with every picture.
-fn items(figures: &Figures, is_played: bool) -> Vec<(String, &'static str)> {
-    let mut items = vec![
-        (format!("time {:7.3} s ", figures.time), "Simulated time"),
-        (format!("{} particles ", count(figures.particles.into())), "Number of particles"),
-    ];
+fn items(figures: &Figures, played: Option<&Timeline>) -> Vec<(String, &'static str)> {
+    let is_played = played.is_some();
+    let mut items = vec![(format!("time {:7.3} s ", figures.time), "Simulated time")];
     if !is_played {
-        let speed =
-            (format!("speed {:4.2} x ", figures.speed), "Simulated seconds per second, recent average");
-        items.insert(1, speed);
-        items.push((
-            format!("{:3.0} pictures/s ", figures.frames_per_second),
-            "Pictures per second of this window",
-        ));
+        let hint = "Actual time scale: simulated seconds per second, recent average";
+        items.push((format!("actual {:4.2} x ", figures.speed), hint));
+    }
+    if played.is_none_or(|timeline| timeline.has_particles) {
+        items.push((format!("{} particles ", count(figures.particles.into())), "Number of particles"));
+    }
+    if !is_played {
+        let rate = match figures.frames_per_second {
+            0.0 => "  -".to_owned(),
+            rate => format!("{rate:3.0}"),
+        };
+        items.push((format!("{rate} pictures/s "), "Pictures per second of this window while it plays"));
     }
     if let Some(triangles) = figures.triangles {
         items.push((format!("{} triangles ", count(triangles.into())), "Triangles of the surface"));
@@ -141,6 +145,24 @@ fn count(number: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_status_line_omits_what_does_not_exist() {
+        let has = |figures: &Figures, played: Option<&Timeline>, word: &str| {
+            items(figures, played).iter().any(|(text, _)| text.contains(word))
+        };
+        let mut figures = Figures::default();
+        let mut timeline = Timeline::new(vec![0, 1], 30.0).unwrap();
+        // A run without particles, such as one that wrote the surface only.
+        timeline.has_particles = false;
+        assert!(!has(&figures, Some(&timeline), "particles"));
+        timeline.has_particles = true;
+        assert!(has(&figures, Some(&timeline), "0 particles") && has(&figures, None, "0 particles"));
+        // The rate of pictures is that of a window that plays.
+        assert!(has(&figures, None, "  - pictures/s"));
+        figures.frames_per_second = 59.8;
+        assert!(has(&figures, None, " 60 pictures/s"));
+    }
 
     #[test]
     fn numbers_are_formatted() {

@@ -28,8 +28,7 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, 
         }
         ScrollArea::vertical().max_height(dialog::inner_height(over) - files - dialogs).show(ui, |ui| {
             recent(ui, &state.recent, &mut requests);
-            let columns =
-                ((ui.available_width() + GAP) / (thumbnails::WIDTH + GAP)).floor().max(1.0) as usize;
+            let columns = ((ui.available_width() + GAP) / (tile_width(ui) + GAP)).floor().max(1.0) as usize;
             let scenes: Vec<_> = thumbnails::scenes().collect();
             Grid::new("scenes").spacing([GAP, GAP]).show(ui, |ui| {
                 for row in scenes.chunks(columns) {
@@ -56,12 +55,12 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, 
             });
         }
     });
-    if requests.iter().any(|request| matches!(request, Action::OpenFile(_))) {
+    if requests.iter().any(|request| matches!(request, Action::OpenFile { .. })) {
         state.shown.gallery = false;
     }
     actions.extend(requests);
     if let Some(path) = file {
-        actions.push(Action::OpenFile(path));
+        actions.push(Action::OpenFile { path, scene: None });
         state.shown.gallery = false;
     }
     if let Some(name) = chosen {
@@ -94,7 +93,8 @@ fn recent(ui: &mut Ui, files: &[RecentFile], requests: &mut Vec<Action>) {
             let path = file.path.display().to_string();
             let response = ui.add_enabled(file.exists, button).on_hover_text(&path);
             if response.on_disabled_hover_text(format!("{path} no longer exists")).clicked() {
-                requests.push(Action::OpenFile(file.path.clone()));
+                let (path, scene) = (file.path.clone(), file.scene.clone());
+                requests.push(Action::OpenFile { path, scene });
             }
         }
         if ui.small_button("Clear list").on_hover_text("Forget the recent scenes and runs").clicked() {
@@ -115,11 +115,16 @@ fn short(path: &Path) -> String {
     }
 }
 
+/// The width of a tile: a picture is a button with a padding.
+fn tile_width(ui: &Ui) -> f32 {
+    thumbnails::WIDTH + 2.0 * ui.spacing().button_padding.x
+}
+
 /// A picture with its name below; returns whether it was clicked.
 fn tile(ui: &mut Ui, name: &str, about: &str, is_open: bool) -> bool {
     let size = vec2(thumbnails::WIDTH, thumbnails::WIDTH * 9.0 / 16.0);
     ui.vertical(|ui| {
-        ui.set_width(thumbnails::WIDTH);
+        ui.set_width(tile_width(ui));
         let picture = match thumbnails::texture(ui.ctx(), name) {
             Some(texture) => ui.add(Button::image((texture, size))),
             None => ui.add_sized(size, Button::new(name)),

@@ -13,7 +13,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         let (rect, response) = ui.allocate_exact_size(vec2(SIZE, SIZE), Sense::click_and_drag());
         let response = response.on_hover_text(
-            "Drag the knob towards the direction of gravity in this view. Double-click to reset",
+            "Drag the knob towards the direction of gravity in this view. Double-click to set it upright",
         );
         let radius = 0.5 * SIZE - 8.0;
         let before = state.scene.gravity;

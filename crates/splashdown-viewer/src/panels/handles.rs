@@ -11,6 +11,8 @@ use crate::state::{Moving, State};
 const ARROW: f32 = 70.0;
 /// Radius of a ring, in points.
 const RING: f32 = 92.0;
+/// Length of the arrow that shows the direction of an emitter, in points.
+const STREAM: f32 = 45.0;
 /// Number of lines in a ring.
 const SEGMENTS: u8 = 48;
 /// Half the edge of the square on a face, in points.
@@ -123,10 +125,10 @@ fn faces(state: &State, rect: Rect) -> Vec<(Axis3, bool, Vec2)> {
     sides.filter_map(place).collect()
 }
 
-/// The rings around a mesh: axes, and closed lines in points of the picture.
+/// The rings around what can be rotated: axes, and closed lines in points of the picture.
 fn rings(state: &State, rect: Rect) -> Vec<(Axis3, Vec<Vec2>)> {
     let Some((item, middle, scale)) = handled(state, rect) else { return Vec::new() };
-    if item.mesh(&state.scene).is_none() {
+    if !item.is_rotatable(&state.scene) {
         return Vec::new();
     }
     let ring = |axis: Axis3| {
@@ -148,7 +150,7 @@ fn colour(axis: Axis3) -> Color32 {
     }
 }
 
-/// Draws the boxes of all things, and the handles of the selected one.
+/// Draws the boxes of all things, the directions of emitters, and the handles of the selected one.
 pub(super) fn draw(painter: &Painter, rect: Rect, state: &State) {
     let at = |point: Vec2| rect.min + egui::vec2(point.x, point.y);
     for item in Item::all(&state.scene) {
@@ -162,6 +164,13 @@ pub(super) fn draw(painter: &Painter, rect: Rect, state: &State) {
             if let (Some(from), Some(to)) = (corners[from], corners[to]) {
                 painter.line_segment([at(from), at(to)], stroke);
             }
+        }
+    }
+    for emitter in &state.scene.emitters {
+        let length = STREAM * state.orbit.metres_per_point(Vec2::new(rect.width(), rect.height()));
+        let ends = [emitter.position, emitter.position + length * emitter.direction];
+        if let [Some(from), Some(to)] = ends.map(|point| projected(state, rect, point)) {
+            painter.arrow(at(from), at(to) - at(from), Stroke::new(2.0, Color32::from_rgb(40, 150, 200)));
         }
     }
     let held = state.moving.as_ref().map(|moving| moving.grab);

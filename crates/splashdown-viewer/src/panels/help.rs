@@ -2,8 +2,10 @@
 
 use egui::{Context, Event, Grid, Key, Label, Rect, RichText, ScrollArea};
 use glam::Vec3;
+use splashdown::scene::Scene;
 
-use super::dialog;
+use super::{change, dialog};
+use crate::edit;
 use crate::look::DisplayMode;
 use crate::state::{Action, Ask, State};
 use crate::timeline::Timeline;
@@ -15,25 +17,25 @@ const LINES: [(&str, &str); 25] = [
     ("wheel, pinch", "zoom"),
     ("W A S D, Q E", "fly"),
     ("F", "reset the camera"),
-    ("Shift + drag", "drag water and dynamic bodies"),
+    ("Shift + drag", "drag the fluid and dynamic bodies"),
     ("Delete", "remove the selected thing (with the tool Edit)"),
     ("Ctrl + Z, Ctrl + Shift + Z", "undo, redo (with the tool Edit)"),
     ("Space", "play, pause"),
-    (".", "advance one frame"),
+    (".", "step: simulate one frame of the scene"),
     ("arrows, Home, End", "frames of a run that is played"),
-    ("R", "reset: start again at time 0, with the changes"),
-    ("1, 2, ...", "view"),
-    ("B", "drop a ball"),
-    ("P", "open or close the tap"),
+    ("R", "restart at time 0, with the changes"),
+    ("1, 2, ...", "views of the fluid"),
+    ("B", "add a ball"),
+    ("P", "add an emitter, or remove it"),
     ("drop a file", "open a scene, checkpoint or run; add a mesh as a body"),
     ("G", "choose a scene"),
     ("C", "settings"),
     ("T", "export a picture"),
-    ("M", "export the surface as a mesh"),
-    ("K", "export a checkpoint to resume from"),
-    ("Ctrl + S", "export the scene with its changes"),
-    ("Ctrl + Shift + S", "save the scene with its changes as a file to choose"),
-    ("Ctrl + O", "choose a scene or a checkpoint to open"),
+    ("M", "export the surface"),
+    ("K", "export a checkpoint to continue from"),
+    ("Ctrl + S", "save the scene with its changes"),
+    ("Ctrl + Shift + S", "save the scene with its changes, as a file to choose"),
+    ("Ctrl + O", "open a scene or a checkpoint"),
     ("H", "this help"),
 ];
 
@@ -56,26 +58,33 @@ pub(super) fn keys(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) 
     };
     let pressed = |key| struck(key, false, None);
     let down = |key| ctx.input(|input| input.key_down(key) && !input.modifiers.command);
+    // A change that is in progress ends first.
+    let is_changing = state.moving.is_some() || state.typing.is_some();
     if let Some(timeline) = &mut state.timeline {
         playback_keys(timeline, pressed);
-    } else if pressed(Key::Space) {
+    } else if pressed(Key::Space) && !is_changing {
         actions.push(Action::Play(!state.playing));
     }
     let is_simulated = state.timeline.is_none();
     for (key, action) in [
         (Key::Period, Action::Step),
-        (Key::R, Action::Reset),
-        (Key::B, Action::DropBall),
-        (Key::P, Action::Pour),
-        (Key::M, Action::SaveMesh),
-        (Key::K, Action::SaveCheckpoint),
+        (Key::R, Action::Restart),
+        (Key::M, Action::ExportSurface),
+        (Key::K, Action::ExportCheckpoint),
     ] {
-        if is_simulated && state.moving.is_none() && pressed(key) {
+        if is_simulated && !is_changing && pressed(key) {
             actions.push(action);
         }
     }
+    for (key, change) in
+        [(Key::B, edit::add_ball as fn(&mut Scene)), (Key::P, edit::toggle_emitter as fn(&mut Scene))]
+    {
+        if is_simulated && !is_changing && pressed(key) {
+            change::apply(state, actions, ctx.input(|input| input.time), change);
+        }
+    }
     if pressed(Key::T) {
-        actions.push(Action::Screenshot);
+        actions.push(Action::ExportPicture);
     }
     if is_simulated && struck(Key::S, true, Some(false)) {
         actions.push(Action::SaveScene);

@@ -14,7 +14,7 @@ pub const NEXT: &str = "\u{e13a}";
 pub const PAUSE: &str = "\u{e39e}";
 pub const PLAY: &str = "\u{e3d0}";
 pub const PREVIOUS: &str = "\u{e138}";
-pub const RESET: &str = "\u{e038}";
+pub const RESTART: &str = "\u{e038}";
 pub const SCENE: &str = "\u{e256}";
 pub const SETTINGS: &str = "\u{e434}";
 pub const STEP: &str = "\u{e064}";
@@ -33,7 +33,7 @@ pub const TILT: &str = "\u{e7bc}";
 /// All icons.
 #[cfg(test)]
 const ALL: [&str; 21] = [
-    FIRST, LAST, LOOP, MORE, NEXT, PAUSE, PLAY, PREVIOUS, RESET, SCENE, SETTINGS, STEP, VIEW, DRAG, ORBIT,
+    FIRST, LAST, LOOP, MORE, NEXT, PAUSE, PLAY, PREVIOUS, RESTART, SCENE, SETTINGS, STEP, VIEW, DRAG, ORBIT,
     SHAKE, TILT, EDIT, REDO, REMOVE, UNDO,
 ];
 

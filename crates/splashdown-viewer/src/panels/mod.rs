@@ -1,5 +1,6 @@
 //! The panels. Each shows and changes a part of the state, and requests actions.
 
+mod change;
 mod dialog;
 mod edit;
 mod fields;
@@ -14,13 +15,14 @@ mod notes;
 mod settings;
 mod timeline;
 mod toolbar;
+mod touch;
 mod viewport;
 
 use egui::{Panel, Ui};
 
 use crate::state::{Action, Ask, State};
 
-pub use edit::finish as finish_edit;
+pub use change::{apply as change_things, at_start as change_at_start};
 pub use viewport::Viewport;
 
 /// Shows all panels. `picture` is the texture in the middle. Returns the viewport, which determines the size of the next
@@ -32,6 +34,7 @@ pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) ->
         ui.ctx().request_discard("the font of the icons");
         return (Viewport { rect: ui.max_rect(), size: [1, 1], touched: None }, actions);
     }
+    touch::fit_tooltips(ui.ctx());
     help::keys(ui.ctx(), state, &mut actions);
     Panel::top("toolbar").resizable(false).show(ui, |ui| toolbar::show(ui, state, &mut actions));
     Panel::bottom("status").resizable(false).show(ui, |ui| figures::show(ui, state));
@@ -42,8 +45,7 @@ pub fn show(ui: &mut Ui, state: &mut State, picture: Option<egui::TextureId>) ->
         .frame(egui::Frame::NONE)
         .show(ui, |ui| viewport::show(ui, state, picture, &mut actions))
         .inner;
-    let over = viewport.rect;
-    notes::show(ui.ctx(), state, over);
+    let over = notes::show(ui.ctx(), state, viewport.rect);
     settings::show(ui.ctx(), state, &mut actions, over);
     edit::show(ui.ctx(), state, &mut actions, over);
     gallery::show(ui.ctx(), state, &mut actions, over);
@@ -61,7 +63,7 @@ fn add_mesh(ui: &mut Ui, actions: &mut Vec<Action>) {
     }
     for (text, hint, ask) in [
         ("Add mesh", "A floating body from an OBJ, STL, PLY or glTF file", Ask::Body),
-        ("Fill mesh", "Fluid in a closed mesh from a file, at time 0: the scene starts again", Ask::Fluid),
+        ("Fill mesh", "Fluid in a closed mesh from a file, at time 0: the scene restarts", Ask::Fluid),
     ] {
         if ui.button(text).on_hover_text(hint).clicked() {
             actions.push(Action::Ask(ask));

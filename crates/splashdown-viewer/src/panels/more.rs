@@ -1,4 +1,4 @@
-//! The menu of everything that is needed rarely: export, theme, statistics, help.
+//! The menu of everything that is needed rarely: files, export, theme, statistics, help.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Ui, vec2};
@@ -11,15 +11,19 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, ha
     let (response, _) = MenuButton::from_button(button).ui(ui, |ui| {
         let is_simulated = state.timeline.is_none();
         if is_simulated && !has_words {
-            toolbar::speed(ui, state, actions);
+            toolbar::time_scale(ui, state, actions);
         }
         if cfg!(not(target_arch = "wasm32")) {
             files(ui, state, actions);
-            ui.separator();
         }
+        let hint = "With its changes, into a new file beside its file (Ctrl + S)";
+        if is_simulated && ui.button("Save scene").on_hover_text(hint).clicked() {
+            actions.push(Action::SaveScene);
+        }
+        ui.separator();
         export(ui, state, actions);
         ui.separator();
-        let hint = "Start again with the scene as its file defines it";
+        let hint = "Restart with the scene as its file defines it";
         if is_simulated && ui.button("Discard changes").on_hover_text(hint).clicked() {
             actions.push(Action::DiscardChanges);
         }
@@ -39,7 +43,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, ha
             state.shown.help = !state.shown.help;
         }
     });
-    toolbar::described(&response, "More", "Open, export, statistics and help");
+    toolbar::described(&response, "More", "Open, save, export, statistics and help");
 }
 
 /// The dialogs of a desktop.
@@ -47,11 +51,7 @@ fn files(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
     for (text, hint, ask) in [
         ("Open scene...", "A scene or a checkpoint (Ctrl + O)", Ask::Scene),
         ("Open run...", "The folder of a finished or interrupted run, to play it", Ask::Run),
-        (
-            "Save scene as...",
-            "The scene with its changes, as a file to choose (Ctrl + Shift + S)",
-            Ask::SaveScene,
-        ),
+        ("Save scene as...", "With its changes, as a file to choose (Ctrl + Shift + S)", Ask::SaveScene),
         ("Add mesh...", "A floating body from an OBJ, STL, PLY or glTF file", Ask::Body),
     ] {
         // A run that is played cannot be changed.
@@ -64,20 +64,19 @@ fn files(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
 
 fn export(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
     if ui.button("Export picture").on_hover_text("As PNG (T)").clicked() {
-        actions.push(Action::Screenshot);
+        actions.push(Action::ExportPicture);
     }
     // A finished run has these files already.
     if state.timeline.is_some() {
         return;
     }
     for (text, hint, action) in [
-        ("Export scene", "The scene with its changes (Ctrl + S)", Action::SaveScene),
         (
             "Export checkpoint",
             "To continue from, here or on the command line (K). Drop the file onto the window to continue",
-            Action::SaveCheckpoint,
+            Action::ExportCheckpoint,
         ),
-        ("Export mesh", "The surface as a closed mesh in PLY (M)", Action::SaveMesh),
+        ("Export surface", "As closed triangles in PLY (M)", Action::ExportSurface),
     ] {
         if ui.button(text).on_hover_text(hint).clicked() {
             actions.push(action);
@@ -94,7 +93,7 @@ fn export(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
         Some(frames) => format!("End film ({frames} pictures)"),
         None => "Export film".to_owned(),
     };
-    let hint = "A picture of every frame of the scene, and a film if ffmpeg is installed. The simulation advances frame by \
+    let hint = "A picture of every frame of the scene, and a film if ffmpeg is installed. The simulation steps frame by \
                 frame until the film is ended here";
     if ui.button(text).on_hover_text(hint).clicked() {
         actions.push(Action::Record);

@@ -1,11 +1,13 @@
-//! The settings of the simulation and of the view.
+//! The settings of the simulation and of its display.
 
 use egui::{CollapsingHeader, ComboBox, Context, Rect, ScrollArea, Slider, SliderClamping, Ui, vec2};
 use splashdown::scene::{ColourBy, MATERIALS, Method, Solver, SurfaceTension};
 use splashdown::surface::MAX_BLOB;
 use splashdown_render::{Axis, ColourMap};
 
-use super::{dialog, gravity};
+use super::{change, dialog, gravity};
+use crate::edit;
+use crate::items::decimal;
 use crate::look::{DisplayMode, Look};
 use crate::state::{Action, State};
 
@@ -26,14 +28,14 @@ pub(super) fn show(ctx: &Context, state: &mut State, actions: &mut Vec<Action>, 
             ScrollArea::vertical().max_height(dialog::inner_height(over)).show(ui, |ui| {
                 if state.timeline.is_some() {
                     // A finished run cannot be changed.
-                    view(ui, state, actions);
+                    display(ui, state, actions);
                     return;
                 }
                 section(ui, "Fluid", |ui| fluid(ui, state, actions));
                 section(ui, "Gravity", |ui| gravity::show(ui, state, actions));
                 section(ui, "Add", |ui| add(ui, state, actions));
                 section(ui, "Solver", |ui| solver(ui, state, actions));
-                section(ui, "View", |ui| view(ui, state, actions));
+                section(ui, "Display", |ui| display(ui, state, actions));
             });
         });
     state.shown.settings = is_open;
@@ -49,20 +51,21 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         .logarithmic(true)
         .max_decimals(0)
         .text("particles");
-    // If all water comes from emitters, the initial number does not determine the particle spacing.
+    // If all fluid comes from emitters, the initial number does not determine the particle spacing.
     let counted = state.counted;
     let wanted = ui
         .add_enabled(counted >= MIN_PARTICLES, wanted)
         .on_hover_text(
-            "Approximate initial number of particles. More particles are finer and slower. Changing it restarts the scene",
+            "Approximate initial number of particles. More particles are finer and slower. A change restarts the scene",
         )
-        .on_disabled_hover_text("This scene starts without water; emitters add it");
+        .on_disabled_hover_text("This scene starts without fluid; emitters add it");
     if wanted.drag_stopped() || (wanted.changed() && !wanted.dragged()) {
         let factor = (counted as f32 / state.particles_wanted).cbrt();
-        state.scene.fluid.particle_spacing *= factor;
-        state.scene.surface.cell_size *= factor;
+        for length in [&mut state.scene.fluid.particle_spacing, &mut state.scene.surface.cell_size] {
+            *length = decimal(factor * *length, *length);
+        }
         state.counted = splashdown::check::count(&state.scene);
-        actions.push(Action::Reset);
+        actions.push(Action::Restart);
     }
     ui.weak(format!("{:.2} mm apart", 1000.0 * state.scene.fluid.particle_spacing));
     let material = &mut state.scene.fluid.material;
@@ -101,16 +104,20 @@ fn fluid(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
 
 fn add(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        if ui.button("Drop a ball").on_hover_text("A ball with half the density of water (B)").clicked() {
-            actions.push(Action::DropBall);
+        let now = ui.input(|input| input.time);
+        if ui.button("Add ball").on_hover_text("A ball with half the density of the fluid (B)").clicked() {
+            change::apply(state, actions, now, edit::add_ball);
         }
-        let tap = if state.pouring { "Close the tap" } else { "Open the tap" };
-        if ui.button(tap).on_hover_text("A stream from above (P)").clicked() {
-            actions.push(Action::Pour);
+        let (text, hint) = match edit::added_emitter(&state.scene) {
+            Some(_) => ("Remove emitter", "The one that was added last (P)"),
+            None => ("Add emitter", "A stream from above (P)"),
+        };
+        if ui.button(text).on_hover_text(hint).clicked() {
+            change::apply(state, actions, now, edit::toggle_emitter);
         }
         super::add_mesh(ui, actions);
     });
-    ui.weak("Drop an OBJ, STL, PLY or glTF file onto the window to add it as a body.");
+    ui.weak("A mesh is also added by dropping its file (OBJ, STL, PLY or glTF) onto the window.");
 }
 
 fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
@@ -168,7 +175,7 @@ fn name(method: Method) -> &'static str {
     }
 }
 
-fn view(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+fn display(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let is_simulated = state.timeline.is_none();
     if is_simulated {
         foam(ui, state, actions);
@@ -186,7 +193,7 @@ fn view(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
 fn foam(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let foam = ui
         .checkbox(&mut state.scene.foam.enabled, "Foam and spray")
-        .on_hover_text("Spray in the air, foam on the surface, bubbles in the water (Ihmsen et al. 2012)");
+        .on_hover_text("Spray in the air, foam on the surface, bubbles in the fluid (Ihmsen et al. 2012)");
     if foam.changed() {
         actions.push(Action::Change);
     }
@@ -223,19 +230,19 @@ fn surface(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let iterations = Slider::new(&mut surface.smoothing_iterations, 0..=25)
         .clamping(SliderClamping::Edits)
         .text("smoothing");
-    let iterations = ui.add(iterations).on_hover_text("Smoothing iterations of the mesh");
+    let iterations = ui.add(iterations).on_hover_text("Smoothing iterations of the surface");
     let spacing = state.scene.fluid.particle_spacing;
     let mut cell = surface.cell_size / spacing;
     let size = ui
         .add(Slider::new(&mut cell, 0.3..=1.5).clamping(SliderClamping::Edits).text("cell size"))
         .on_hover_text("Size of a marching-cubes cell in particle spacings: smaller is finer and slower");
     if size.changed() {
-        surface.cell_size = cell * spacing;
+        surface.cell_size = decimal(cell * spacing, spacing);
     }
     let blob = Slider::new(&mut surface.min_blob, 0..=MAX_BLOB).clamping(SliderClamping::Edits);
     let blob = ui
         .add(blob.text("smallest blob"))
-        .on_hover_text("Blobs of fewer particles are drawn as droplets and are not part of the mesh");
+        .on_hover_text("Blobs of fewer particles are drawn as droplets and are not part of the surface");
     if size.changed() || iterations.changed() || blob.changed() {
         actions.push(Action::Change);
     }

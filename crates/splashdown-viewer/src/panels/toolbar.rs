@@ -3,11 +3,11 @@
 use egui::containers::menu::MenuButton;
 use egui::{Button, DragValue, Popup, Ui, vec2};
 
-use super::{edit, icons, more};
+use super::{change, icons, more, touch};
 use crate::look::DisplayMode;
 use crate::state::{Action, State, Tool};
 
-/// Below this width, in points, buttons show icons without words, and the speed is in the menu.
+/// Below this width, in points, buttons show icons without words, and the time scale is in the menu.
 const WORDS: f32 = 700.0;
 /// Length of the longest name of a scene in the toolbar, in characters.
 const NAME: usize = 22;
@@ -15,6 +15,7 @@ const NAME: usize = 22;
 const SHORT_NAME: usize = 9;
 
 pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    touch::enlarge(ui);
     let has_words = ui.available_width() >= WORDS;
     ui.horizontal(|ui| {
         if !has_words {
@@ -38,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         views(ui, state, has_words);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             more::show(ui, state, actions, has_words);
-            let hint = "Fluid, gravity, solver and view (C)";
+            let hint = "Fluid, gravity, solver and display (C)";
             if icons::toggle(ui, icons::SETTINGS, "Settings", hint, state.shown.settings).clicked() {
                 state.shown.settings = !state.shown.settings;
             }
@@ -55,28 +56,28 @@ fn clock(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, has_words: b
     if icons::button(ui, icons::STEP, "Step", "Simulate one frame of the scene (.)").clicked() {
         actions.push(Action::Step);
     }
-    if icons::button(ui, icons::RESET, "Reset", "Start again at time 0, with the changes (R)").clicked() {
-        actions.push(Action::Reset);
+    if icons::button(ui, icons::RESTART, "Restart", "At time 0, with the changes (R)").clicked() {
+        actions.push(Action::Restart);
     }
     if has_words {
-        speed(ui, state, actions);
+        time_scale(ui, state, actions);
     }
 }
 
-/// The speed of a simulation.
-pub(super) fn speed(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
-    let speed = DragValue::new(&mut state.time_scale)
+/// The time scale of a simulation.
+pub(super) fn time_scale(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let scale = DragValue::new(&mut state.time_scale)
         .range(0.05..=4.0)
         .clamp_existing_to_range(true)
         .speed(0.02)
         .max_decimals(2)
-        .prefix("speed ")
+        .prefix("time scale ")
         .suffix(" x");
-    let speed = ui.add(speed).on_hover_text(
+    let scale = ui.add(scale).on_hover_text(
         "Simulated seconds per second: drag, or click to type. If the machine is too slow, the simulation runs slower; the \
          window stays responsive",
     );
-    if speed.changed() {
+    if scale.changed() {
         actions.push(Action::TimeScale);
     }
 }
@@ -94,7 +95,7 @@ fn tools(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>, has_words: b
                 if response.clicked() {
                     let before = std::mem::replace(&mut state.tool, tool);
                     if tool == Tool::Edit && before != tool {
-                        edit::start_again(state, actions);
+                        change::start_again(state, actions);
                     }
                 }
             }

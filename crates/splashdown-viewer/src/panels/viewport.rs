@@ -42,7 +42,7 @@ pub(super) fn show(
         state.orbit.pan(drag, size_of(rect));
     }
     let tool = match (&state.timeline, ui.input(|input| input.modifiers.shift)) {
-        // The water of a finished run cannot be moved.
+        // The fluid of a finished run cannot be moved.
         (Some(_), _) => Tool::Orbit,
         (None, true) if state.moving.is_none() => Tool::Drag,
         (None, _) => state.tool,
@@ -92,7 +92,7 @@ fn zoom(ui: &Ui, response: &Response, state: &mut State) {
     }
 }
 
-/// Drags water or a body. The mouse force acts in the plane through the camera's target. A held body keeps its distance
+/// Drags the fluid or a body. The mouse force acts in the plane through the camera's target. A held body keeps its distance
 /// from the camera.
 fn drag_fluid(ui: &Ui, response: &Response, state: &mut State, actions: &mut Vec<Action>) -> Option<Vec2> {
     let size = size_of(response.rect);
@@ -126,7 +126,7 @@ fn ring(ui: &Ui, response: &Response, state: &State) {
     let Some(at) = response.hover_pos().or(response.interact_pointer_pos()) else { return };
     let radius = mouse::radius(&state.scene) / state.orbit.metres_per_point(size_of(response.rect));
     let painter = ui.painter_at(response.rect);
-    // Two colours, so that it is visible on water and on the sky.
+    // Two colours, so that it is visible on the fluid and on the sky.
     painter.circle_stroke(at, radius, Stroke::new(3.0, Color32::from_black_alpha(110)));
     painter.circle_stroke(at, radius, Stroke::new(1.5, Color32::WHITE));
 }

@@ -10,6 +10,8 @@ use splashdown::scene::{Choice, Scene, Solver, SurfaceTension};
 use toml_edit::{DocumentMut, Item, Table, value};
 
 use crate::camera::Orbit;
+use crate::items::{decimal, decimals};
+use crate::problem;
 use values::{number, vector};
 
 /// The text of the scene's file with the changes; comments and order are preserved.
@@ -21,7 +23,7 @@ pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
         scene.source.as_deref().map_or_else(|| scene.name.clone(), |path| path.display().to_string());
     let folder = scene.source.as_deref().and_then(Path::parent);
     let parse = |text: &str| -> Result<Scene, String> {
-        let mut scene = Scene::parse(text, &source).map_err(|error| error.to_string())?;
+        let mut scene = Scene::parse(text, &source).map_err(|errors| problem::of_scene(&errors))?;
         if let Some(folder) = folder {
             files::resolve(&mut scene, folder);
         }
@@ -68,7 +70,7 @@ pub fn moved_to(text: &str, scene: &Scene, path: &Path) -> Result<String, String
     files::make_absolute(&mut document, &from);
     let moved = document.to_string();
     // The file must give the same scene there.
-    Scene::parse_beside(&moved, path).map_err(|error| error.to_string())?;
+    Scene::parse_beside(&moved, path).map_err(|errors| problem::of_scene(&errors))?;
     Ok(moved)
 }
 
@@ -130,10 +132,11 @@ fn numbers(document: &mut DocumentMut, old: &Scene, new: &Scene) {
 fn camera(document: &mut DocumentMut, orbit: &Orbit) {
     let section = document.entry("camera").or_insert(Item::Table(Table::new()));
     if let Some(table) = section.as_table_like_mut() {
-        table.insert("target", vector(orbit.target));
-        table.insert("distance", number(orbit.distance));
-        table.insert("azimuth", number(orbit.azimuth));
-        table.insert("elevation", number(orbit.elevation));
+        let distance = orbit.distance;
+        table.insert("target", vector(decimals(orbit.target, distance)));
+        table.insert("distance", number(decimal(distance, distance)));
+        table.insert("azimuth", number(decimal(orbit.azimuth, 10.0)));
+        table.insert("elevation", number(decimal(orbit.elevation, 10.0)));
     }
 }
 
@@ -144,7 +147,7 @@ mod tests {
     use crate::edit;
     use crate::items::Item;
     use glam::Vec3;
-    use splashdown::scene::{Method, Scene, presets};
+    use splashdown::scene::{Method, Outlet, Scene, presets};
 
     #[test]
     fn changes_of_every_scene_are_saved() {
@@ -158,7 +161,7 @@ mod tests {
             changed.solver.select_method(Method::Wcsph);
             changed.solver.artificial_viscosity = 0.07;
             edit::add_ball(&mut changed);
-            edit::turn_tap(&mut changed);
+            edit::add_emitter(&mut changed);
             let mut orbit = Orbit::of_scene(&changed);
             orbit.azimuth = 77.0;
             let saved = scene(&changed, &orbit).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -215,14 +218,14 @@ mod tests {
             )
         };
         let (name, text) = presets().iter().find(|(name, _)| *name == "dam-break-small").unwrap();
-        let emitter = "[[emitter]]\nname = \"tap\"\nshape = \"rectangle\"\nsize = [0.1, 0.1]\nposition = [0.5, 0.5, 0.5]\n\
+        let emitter = "[[emitter]]\nname = \"emitter-1\"\nshape = \"rectangle\"\nsize = [0.1, 0.1]\nposition = [0.5, 0.5, 0.5]\n\
                        direction = [0, -1, 0]\nspeed = 1\n";
         let text = format!("{text}\n{}{}{emitter}", body("ball-1", "cube"), body("post", "sphere"));
         let mut changed = Scene::parse(&text, name).unwrap();
         Item::Body(0).remove(&mut changed);
         Item::Emitter(0).remove(&mut changed);
         edit::add_ball(&mut changed);
-        edit::turn_tap(&mut changed);
+        edit::add_emitter(&mut changed);
         changed.bodies[1].name = "ball-1".to_owned();
         // The same thing again behind the others: it was removed, and added.
         let text = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
@@ -271,6 +274,38 @@ mod tests {
             }
         }
         assert!(saved > 15, "only {saved} changes were saved");
+    }
+
+    #[test]
+    fn the_directions_and_sizes_of_emitters_are_saved_with_few_digits() {
+        let (name, text) = presets().iter().find(|(name, _)| *name == "dam-break-small").unwrap();
+        let emitter = |name: &str, size: &str| {
+            format!(
+                "[[emitter]]\nname = \"{name}\" # an outlet\n{size}\nposition = [0.5, 0.5, 0.4]\ndirection = [0, -1, 0]\nspeed = 1\n"
+            )
+        };
+        let [disc, slot] = [("disc", "radius = 0.1"), ("slot", "shape = \"rectangle\"\nsize = [0.2, 0.1]")];
+        let text = format!("{text}\n{}{}", emitter(disc.0, disc.1), emitter(slot.0, slot.1));
+        let mut changed = Scene::parse(&text, name).unwrap();
+        for index in 0..2 {
+            Item::Emitter(index).rotate_by(&mut changed, glam::Quat::from_rotation_x(0.7), Vec3::ZERO);
+            changed.emitters[index].speed = 2.5;
+        }
+        changed.emitters[0].outlet = Outlet::Disc { radius: 0.12 };
+        changed.emitters[1].outlet = Outlet::Rectangle { size: [0.3, 0.15] };
+        let saved = scene(&changed, &Orbit::of_scene(&changed)).unwrap();
+        let read = Scene::parse(&saved, name).unwrap();
+        for (a, b) in read.emitters.iter().zip(&changed.emitters) {
+            assert_eq!((&a.name, &a.outlet, a.speed), (&b.name, &b.outlet, b.speed), "{saved}");
+            assert!(a.direction.distance(b.direction) < 1e-6, "{saved}");
+        }
+        assert_eq!(saved.matches("# an outlet").count(), text.matches("# an outlet").count(), "{saved}");
+        // Control: single precision has more digits.
+        assert!(changed.emitters[0].direction.y.to_string().len() > 9);
+        let added: Vec<&str> = saved.lines().filter(|line| !text.contains(line)).collect();
+        let digits = |word: &str| word.chars().filter(char::is_ascii_digit).count();
+        let numbers = added.iter().flat_map(|line| line.split([' ', ',', '[', ']']));
+        assert!(numbers.clone().count() > 20 && numbers.clone().all(|word| digits(word) <= 8), "{added:#?}");
     }
 
     #[test]

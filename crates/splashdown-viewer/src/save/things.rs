@@ -6,7 +6,7 @@ use splashdown::scene::{
 };
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TableLike, value};
 
-use super::values::{degrees, number, vector};
+use super::values::{degrees, direction, number, pair, vector};
 
 /// Writes moved, removed and added blocks.
 pub fn blocks(document: &mut DocumentMut, old: &[Block], new: &[Block]) {
@@ -118,19 +118,38 @@ pub fn bodies(document: &mut DocumentMut, old: &[Body], new: &[Body]) -> Result<
 pub fn emitters(document: &mut DocumentMut, old: &[Emitter], new: &[Emitter]) -> Result<(), String> {
     let is_same = |before: &Emitter, now: &Emitter| {
         let mut before = before.clone();
-        before.position = now.position;
-        if let (Outlet::Mesh(before), Outlet::Mesh(now)) = (&mut before.outlet, &now.outlet) {
-            before.position = now.position;
+        (before.position, before.direction, before.speed) = (now.position, now.direction, now.speed);
+        match (&mut before.outlet, &now.outlet) {
+            (Outlet::Disc { radius: before }, Outlet::Disc { radius: now }) => *before = *now,
+            (Outlet::Rectangle { size: before }, Outlet::Rectangle { size: now }) => *before = *now,
+            (Outlet::Mesh(before), Outlet::Mesh(now)) => before.position = now.position,
+            _ => {}
         }
         before == *now
-    };
-    let moved = |table: &mut Table, _: &Emitter, now: &Emitter| {
-        table.insert("position", vector(now.position));
     };
     if old == new {
         return Ok(());
     }
-    differences(tables(document.as_table_mut(), "emitter"), (old, new), is_same, moved, emitter_table)
+    differences(tables(document.as_table_mut(), "emitter"), (old, new), is_same, write_emitter, emitter_table)
+}
+
+/// Writes what the window can change of an emitter, as far as it has changed.
+fn write_emitter(table: &mut Table, before: &Emitter, now: &Emitter) {
+    if before.position != now.position {
+        table.insert("position", vector(now.position));
+    }
+    if before.direction != now.direction {
+        table.insert("direction", direction(now.direction));
+    }
+    if before.speed != now.speed {
+        table.insert("speed", number(now.speed));
+    }
+    match &now.outlet {
+        outlet if *outlet == before.outlet => {}
+        Outlet::Disc { radius } => drop(table.insert("radius", number(*radius))),
+        Outlet::Rectangle { size } => drop(table.insert("size", pair(*size))),
+        Outlet::Mesh(_) => {}
+    }
 }
 
 /// Writes the differences of a list. `is_same` tells whether a thing has only been moved. The name does not: a removed thing
@@ -194,7 +213,8 @@ fn scale(mesh: &MeshSource) -> Item {
     if uniform { number(mesh.scale.x) } else { vector(mesh.scale) }
 }
 
-/// Replaces rotations that were read from angles by those of the scene from which the angles were made, up to rounding.
+/// Replaces rotations and directions that were read from rounded numbers by those of the scene from which the numbers were
+/// made.
 pub fn adopt_rotations(read: &mut Scene, scene: &Scene) {
     let adopt = |read: &mut MeshSource, scene: &MeshSource| {
         if read.rotation.dot(scene.rotation).abs() > 1.0 - 1e-6 {
@@ -206,6 +226,11 @@ pub fn adopt_rotations(read: &mut Scene, scene: &Scene) {
     }
     for (read, filled) in read.fluid.meshes.iter_mut().zip(&scene.fluid.meshes) {
         adopt(&mut read.mesh, &filled.mesh);
+    }
+    for (read, emitter) in read.emitters.iter_mut().zip(&scene.emitters) {
+        if read.direction.dot(emitter.direction) > 1.0 - 1e-6 {
+            read.direction = emitter.direction;
+        }
     }
 }
 
@@ -261,7 +286,7 @@ fn emitter_table(emitter: &Emitter) -> Result<Table, String> {
     table.insert("shape", value("disc"));
     table.insert("radius", number(radius));
     table.insert("position", vector(emitter.position));
-    table.insert("direction", vector(emitter.direction));
+    table.insert("direction", direction(emitter.direction));
     table.insert("speed", number(emitter.speed));
     if let Some(max_particles) = emitter.max_particles {
         table.insert("max_particles", value(i64::from(max_particles)));
