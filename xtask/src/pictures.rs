@@ -48,8 +48,10 @@ const THUMBNAILS: [(&str, u32); 9] = [
     ("thin-cup", 30),
 ];
 
-/// The film of the web page for browsers without WebGPU: scene and last frame.
-const FILM: (&str, u32) = ("dam-break-small", 47);
+/// The film of the web page for browsers without WebGPU: scene and last frame. With frame 0 it has 52 pictures.
+const FILM: (&str, u32) = ("dam-break-small", 51);
+/// Its pictures per second.
+const FILM_RATE: u32 = 12;
 
 /// The command `pictures`. Arguments are names of scenes; without any, all pictures are rendered.
 pub fn run(arguments: &[String]) -> Result<()> {
@@ -122,7 +124,9 @@ fn film(binary: &Path, out: &str) -> Result<()> {
     let mut command = process::command(binary);
     process::run(command.args(["render", out, "--size", "384x216", "--out"]).arg(&folder))?;
     let mut ffmpeg = process::command("ffmpeg");
-    ffmpeg.args(["-y", "-loglevel", "error", "-framerate", "12", "-i"]).arg(folder.join("picture_%04d.png"));
+    ffmpeg
+        .args(["-y", "-loglevel", "error", "-framerate", &FILM_RATE.to_string(), "-i"])
+        .arg(folder.join("picture_%04d.png"));
     process::run(ffmpeg.args(["-c:v", "libwebp_anim", "-quality", "55", "-loop", "0", "web/film.webp"]))
 }
 
@@ -133,4 +137,16 @@ fn thumbnail(from: &Path, name: &str) -> Result<()> {
     let mut ffmpeg = process::command("ffmpeg");
     ffmpeg.args(["-y", "-loglevel", "error", "-i"]).arg(from);
     process::run(ffmpeg.args(["-filter_complex", filter, &to]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FILM, FILM_RATE};
+
+    #[test]
+    fn the_film_of_the_page_lasts_more_than_four_seconds() {
+        // A part of a second is left for programs that drop the duration of the last picture.
+        let seconds = f64::from(FILM.1 + 1) / f64::from(FILM_RATE);
+        assert!(seconds >= 4.2, "{seconds} s");
+    }
 }
