@@ -310,13 +310,33 @@ fn is_of_window(reason: &str) -> bool {
     reason.contains("In Surface::")
 }
 
+/// Name and interface. Browsers may hide the name.
 fn describe(info: &wgpu::AdapterInfo) -> String {
-    format!("{} ({:?})", info.name, info.backend)
+    let interface = match info.backend {
+        wgpu::Backend::BrowserWebGpu => "WebGPU".to_owned(),
+        backend => format!("{backend:?}"),
+    };
+    let name = match (info.name.trim(), info.backend) {
+        ("", wgpu::Backend::BrowserWebGpu) => "GPU of the browser",
+        ("", _) => "unnamed device",
+        (name, _) => name,
+    };
+    format!("{name} ({interface})")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::is_of_window;
+    use super::{describe, is_of_window};
+
+    #[test]
+    fn a_device_without_a_name_is_described() {
+        let mut info = wgpu::AdapterInfo::new(wgpu::DeviceType::Other, wgpu::Backend::BrowserWebGpu);
+        assert_eq!(describe(&info), "GPU of the browser (WebGPU)");
+        info.backend = wgpu::Backend::Vulkan;
+        assert_eq!(describe(&info), "unnamed device (Vulkan)");
+        info.name = "llvmpipe".to_owned();
+        assert_eq!(describe(&info), "llvmpipe (Vulkan)");
+    }
 
     #[test]
     fn errors_of_a_window_are_not_those_of_the_device() {
