@@ -60,7 +60,7 @@ impl Archive {
 
     /// Adds or replaces an array with rows of `columns` numbers, as `name.npy`.
     pub fn set_array<T: NpyElement>(&mut self, name: &str, data: &[T], columns: usize) {
-        let mut bytes = npy::header(T::DESCR, [data.len() / columns.max(1), columns]);
+        let mut bytes = npy::header(T::DESCR, &npy::shape(data.len() / columns.max(1), columns));
         bytes.extend_from_slice(bytemuck::cast_slice(data));
         self.set_bytes(&format!("{name}.npy"), bytes);
     }

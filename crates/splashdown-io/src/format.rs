@@ -28,6 +28,7 @@ pub struct Format {
     is_series: bool,
     has_velocities: bool,
     has_attributes: bool,
+    has_index: bool,
 }
 
 /// A format that is neither read nor written.
@@ -41,6 +42,7 @@ const NONE: Format = Format {
     is_series: false,
     has_velocities: false,
     has_attributes: false,
+    has_index: false,
 };
 
 impl Format {
@@ -78,9 +80,22 @@ impl Format {
             write_particles: Some(|path, particles| {
                 write_particles(path, particles, vtu::write_particles_to)
             }),
+            has_index: true,
             ..NONE
         },
-        Self { name: "VTU", ending: ".vtp", read_particles: Some(vtu::read), ..NONE },
+        Self {
+            name: "VTP",
+            ending: ".vtp",
+            read_particles: Some(vtu::read),
+            write_particles: Some(|path, particles| {
+                write_particles(path, particles, vtu::write_poly_particles_to)
+            }),
+            write_mesh: Some(|path, mesh| write_mesh(path, mesh, vtu::write_mesh_to)),
+            has_velocities: true,
+            has_attributes: true,
+            has_index: true,
+            ..NONE
+        },
         Self {
             name: "BGEO",
             ending: ".bgeo",
@@ -188,6 +203,12 @@ impl Format {
     #[must_use]
     pub fn has_attributes(&self) -> bool {
         self.has_attributes
+    }
+
+    /// Whether the index of a series ([`pvd`](crate::pvd)) can list its files.
+    #[must_use]
+    pub fn has_index(&self) -> bool {
+        self.has_index
     }
 }
 

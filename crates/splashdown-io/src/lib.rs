@@ -1,15 +1,15 @@
 //! Reads and writes the files of Splashdown: particles, meshes, pictures, films and tables.
 //!
 //! The crate depends neither on the simulation nor on a GPU. [`Particles`] and [`Mesh`] are plain arrays in SI units with
-//! y up.
+//! y up. [`ParticleInfo`] is the time and the particle spacing, which all particle files contain if they are known.
 //! [`Format::ALL`] is the table of their file formats:
 //!
 //! | data | read and written by | formats | opens in |
 //! |---|---|---|---|
-//! | [`Particles`] | [`read_particles`], [`write_particles`] | PLY, VTK, VTU, BGEO, NPZ; read only: VTP, NPY, XYZ | ParaView, Blender, Houdini, MeshLab, numpy |
-//! | [`Mesh`] | [`read_mesh`], [`write_mesh`] | PLY, OBJ, STL, glTF; written only: VTK | every 3-D program |
+//! | [`Particles`] | [`read_particles`], [`write_particles`] | PLY, VTK, VTU, VTP, BGEO, NPZ; read only: NPY, XYZ | ParaView, Blender, MeshLab, numpy |
+//! | [`Mesh`] | [`read_mesh`], [`write_mesh`] | PLY, OBJ, STL, glTF, VTK, VTP | every 3-D program |
 //! | all frames of a run, with bodies, camera and materials | [`StageFile`] | USD, GLB | Blender, Houdini, Maya |
-//! | index of the VTU files of a run | [`pvd::write_index`] | PVD | ParaView |
+//! | index of the VTU or VTP files of a run | [`pvd::write_index`] | PVD | ParaView |
 //! | [`Picture`] | `picture::read_png`, `picture::write_png` (feature `png`) | PNG | every program |
 //! | film | [`Film`] | MP4, encoded by the `ffmpeg` that the user has installed | every player |
 //! | named arrays and texts | [`Archive`] | ZIP of NPY | `numpy.load` |
@@ -103,7 +103,7 @@ mod xyz;
 
 pub use archive::{Archive, NpyElement};
 pub use atomic::prepare_folder;
-pub use data::{Attribute, Mesh, Particles};
+pub use data::{Attribute, Mesh, ParticleInfo, Particles};
 pub use error::{FilmError, IoError, WriteCause};
 pub use film::{Film, FilmOptions};
 pub use format::Format;

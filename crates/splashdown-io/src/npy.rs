@@ -132,9 +132,13 @@ pub(crate) fn split(bytes: &[u8]) -> Result<(String, &[u8]), String> {
     Ok((String::from_utf8_lossy(header).into_owned(), data))
 }
 
-/// The header of `rows` x `columns` numbers of a type (`<f4`, `<u4`). An array of one column has one axis.
-pub(crate) fn header(kind: &str, [rows, columns]: [usize; 2]) -> Vec<u8> {
-    let shape = if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") };
+/// The shape of an array of rows. An array of one column has one axis.
+pub(crate) fn shape(rows: usize, columns: usize) -> String {
+    if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") }
+}
+
+/// The header of an array of a type (`<f4`, `<u4`) and a shape, given as in Python: `(5, 3)`, `(5,)`, `()`.
+pub(crate) fn header(kind: &str, shape: &str) -> Vec<u8> {
     let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     // Signature, version and length have ten bytes; a line feed ends the header; the data begins at a multiple of 64.
     let padded = (10 + header.len() + 1).next_multiple_of(64) - 10;
@@ -179,7 +183,7 @@ mod tests {
     #[test]
     fn the_written_header_is_aligned_and_is_read() {
         let data = [1.0_f32, 2.0, 3.0, -4.0, 5.5, 6.0];
-        let mut bytes = header("<f4", [2, 3]);
+        let mut bytes = header("<f4", "(2, 3)");
         bytes.extend_from_slice(bytemuck::cast_slice(&data));
         assert_eq!(bytes.len() - 24, 128);
         assert_eq!(parse(&bytes).unwrap(), [[1.0, 2.0, 3.0], [-4.0, 5.5, 6.0]]);

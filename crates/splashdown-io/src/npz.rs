@@ -5,7 +5,7 @@
 //!
 //! Arrays written: `positions` and `velocities` (float32, N x 3), `densities` and `pressures` (float32, N), `ids`
 //! (uint32, N), where present, and other attributes by their names (float32). Arrays of any number type are read; others
-//! are skipped.
+//! are skipped. `time` (float64) and `particle_spacing` (float32) are arrays without axes.
 
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write};
@@ -16,7 +16,8 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::atomic;
 use crate::data::columns::{Wanted, triples};
-use crate::data::{Attribute, Particles};
+use crate::data::info::{PARTICLE_SPACING, TIME};
+use crate::data::{Attribute, ParticleInfo, Particles};
 use crate::error::IoError;
 use crate::input::{MAX_COUNT, regular};
 use crate::limit::Budget;
@@ -24,6 +25,9 @@ use crate::npy::{self, Layout};
 
 /// Names of the array of positions, in order of preference; the last is numpy's name for an unnamed array.
 const POSITIONS: [&str; 7] = ["positions", "position", "points", "particles", "pos", "x", "arr_0"];
+
+/// Bytes of the file of a scalar that are read; numpy writes 136.
+const LONGEST_SCALAR: u64 = 4096;
 
 pub(crate) fn write_particles(path: &Path, particles: &Particles) -> Result<u64, IoError> {
     particles.check()?;
@@ -43,19 +47,43 @@ pub(crate) fn write_particles(path: &Path, particles: &Particles) -> Result<u64,
     let fields = fields
         .into_iter()
         .filter(|(name, _, _, data)| count == 0 || !data.is_empty() || *name == "positions");
-    let arrays = fields.chain(others);
+    let arrays: Vec<_> = fields.chain(others).collect();
+    // An attribute of the same name would be the same file of the archive.
+    let is_free = |name: &str| names.iter().all(|other| other != name);
+    let scalars = scalars(particles.info).into_iter().filter(|(name, ..)| is_free(name));
     atomic::write_file(path, |file: &mut BufWriter<File>| {
         let mut archive = ZipWriter::new(file);
         for (name, kind, columns, data) in arrays {
-            let options = SimpleFileOptions::default()
-                .compression_method(CompressionMethod::Stored)
-                .large_file(data.len() as u64 > u64::from(u32::MAX) - 1024);
-            archive.start_file(format!("{name}.npy"), options).map_err(io::Error::other)?;
-            archive.write_all(&npy::header(kind, [count, columns]))?;
-            archive.write_all(data)?;
+            add(&mut archive, name, &npy::header(kind, &npy::shape(count, columns)), data)?;
+        }
+        for (name, kind, data) in scalars {
+            add(&mut archive, name, &npy::header(kind, "()"), &data)?;
         }
         archive.finish().map(drop).map_err(io::Error::other)
     })
+}
+
+/// Adds an array to an archive.
+fn add(
+    archive: &mut ZipWriter<&mut BufWriter<File>>,
+    name: &str,
+    header: &[u8],
+    data: &[u8],
+) -> io::Result<()> {
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Stored)
+        .large_file(data.len() as u64 > u64::from(u32::MAX) - 1024);
+    archive.start_file(format!("{name}.npy"), options).map_err(io::Error::other)?;
+    archive.write_all(header)?;
+    archive.write_all(data)
+}
+
+/// Name, type and bytes of the known scalars.
+fn scalars(info: ParticleInfo) -> Vec<(&'static str, &'static str, Vec<u8>)> {
+    let ParticleInfo { time, particle_spacing } = info.credible();
+    let time = time.map(|time| (TIME, "<f8", time.to_le_bytes().to_vec()));
+    let spacing = particle_spacing.map(|spacing| (PARTICLE_SPACING, "<f4", spacing.to_le_bytes().to_vec()));
+    time.into_iter().chain(spacing).collect()
 }
 
 /// The name of an attribute without characters that separate folders, because every array is a file of the archive.
@@ -111,7 +139,26 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
             .append(&mut particles, own, columns, &values)
             .map_err(|reason| malformed(format!("array `{name}`: {reason}")))?;
     }
+    particles.info = info(&mut archive);
     Ok(particles)
+}
+
+/// The scalars of an archive; those that cannot be read are ignored.
+fn info<R: Read + io::Seek>(archive: &mut ZipArchive<R>) -> ParticleInfo {
+    let mut info = ParticleInfo::default();
+    for name in [TIME, PARTICLE_SPACING] {
+        scalar(archive, name).into_iter().for_each(|value| info.set(name, value));
+    }
+    info
+}
+
+/// An array without axes.
+fn scalar<R: Read + io::Seek>(archive: &mut ZipArchive<R>, name: &str) -> Option<f64> {
+    let mut bytes = Vec::new();
+    archive.by_name(&format!("{name}.npy")).ok()?.take(LONGEST_SCALAR).read_to_end(&mut bytes).ok()?;
+    let (header, data) = npy::split(&bytes).ok()?;
+    let layout = Layout::of(&header).ok().filter(|layout| layout.shape.is_empty())?;
+    layout.number.decode(layout.data(data).ok()?, false).first().copied()
 }
 
 /// An array of rows.

@@ -30,7 +30,7 @@ mod tests {
     fn an_unknown_ending_lists_the_known_ones() {
         let message = write_particles(Path::new("frame.xyz"), &three()).unwrap_err().to_string();
         assert!(
-            message.contains("frame.xyz") && message.contains(".ply, .vtk, .vtu, .bgeo, .npz"),
+            message.contains("frame.xyz") && message.contains(".ply, .vtk, .vtu, .vtp, .bgeo, .npz"),
             "{message}"
         );
     }

@@ -83,5 +83,5 @@ fn the_ending_of_the_name_selects_the_format() {
     write_mesh(&path, &cube).unwrap();
     assert_eq!(corners(&std::fs::read(&path).unwrap()), expected(&cube));
     let message = write_mesh(&folder.path().join("cube.xyz"), &cube).unwrap_err().to_string();
-    assert!(message.contains("cube.xyz") && message.contains(".ply, .vtk, .obj, .stl"), "{message}");
+    assert!(message.contains("cube.xyz") && message.contains(".ply, .vtk, .vtp, .obj, .stl"), "{message}");
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use flate2::read::GzDecoder;
 
-use crate::data::Particles;
 use crate::data::columns::{Column, Wanted, triples};
+use crate::data::{ParticleInfo, Particles};
 use crate::error::IoError;
 use crate::input::{MAX_COUNT, regular};
 use crate::limit::Budget;
@@ -16,6 +16,9 @@ use crate::number::{Cells, Number};
 /// The largest size of a row in bytes, far above that of real files. It prevents that a malformed header causes a large
 /// allocation.
 const MAX_ROW: usize = 1 << 16;
+
+/// The most attributes of the whole that are read; in files with more, all of them are ignored.
+const MAX_DETAIL: usize = 64;
 
 /// Rows decoded at a time.
 const ROWS: usize = 1024;
@@ -73,20 +76,43 @@ fn parse(file: &mut impl Read, wanted: Wanted, budget: &mut Budget) -> Result<Pa
         let given = word(file, "its header")?;
         *count = usize::try_from(given).map_err(|_| format!("its header has a count of {given}"))?;
     }
-    let [points, _, _, _, attributes, ..] = counts;
+    let [points, primitives, _, _, attributes, vertex_attributes, primitive_attributes, detail] = counts;
     if points > MAX_COUNT {
         return Err(Reason::TooMany(points));
     }
     // A row begins with x, y, z and a weight.
     let (mut row, mut places) = (16, Vec::new());
     for number in 0..attributes {
-        row += attribute(file, number, row, wanted, &mut places)?;
+        row += attribute(file, number, row, |name, components| wanted.has(name, components), &mut places)?;
         if row > MAX_ROW {
             return Err(Reason::Text(format!("its rows are more than {MAX_ROW} bytes long")));
         }
     }
     budget.take(points as u64 * row as u64, format_args!("its list of {points} points"))?;
-    rows(file, points, row, wanted, &places)
+    let mut particles = rows(file, points, row, wanted, &places)?;
+    if [primitives, vertex_attributes, primitive_attributes] == [0; 3] && detail <= MAX_DETAIL {
+        // They are optional, and some programs end the file after the points.
+        particles.info = info(file, detail).unwrap_or_default();
+    }
+    Ok(particles)
+}
+
+/// Reads the attributes of the whole, which follow the points in a file without primitives.
+fn info(file: &mut impl Read, attributes: usize) -> Result<ParticleInfo, String> {
+    let (mut row, mut places) = (0, Vec::new());
+    for number in 0..attributes {
+        row += attribute(file, number, row, |name, _| ParticleInfo::has(name), &mut places)?;
+    }
+    let mut bytes = vec![0; row];
+    file.read_exact(&mut bytes).map_err(|error| error.to_string())?;
+    let mut info = ParticleInfo::default();
+    for Place { name, at, components, number } in places.iter().filter(|place| place.components == 1) {
+        let mut values = Vec::<f64>::new();
+        let cells = Cells { at: *at, components: *components, stride: row, big_endian: true };
+        number.decode_cells(&bytes, cells, &mut values);
+        values.first().iter().for_each(|&&value| info.set(name, value));
+    }
+    Ok(info)
 }
 
 /// Reads the description of the attribute at byte `at` of a row; returns its size in the row, in bytes.
@@ -94,7 +120,7 @@ fn attribute(
     file: &mut impl Read,
     number: usize,
     at: usize,
-    wanted: Wanted,
+    wanted: impl Fn(&str, usize) -> bool,
     places: &mut Vec<Place>,
 ) -> Result<usize, String> {
     let what = "its list of attributes";
@@ -115,7 +141,7 @@ fn attribute(
         for _ in 0..components {
             word(file, what)?;
         }
-        if wanted.has(&name, components) {
+        if wanted(&name, components) {
             let is_id = Column::named(&name, components) == Some(Column::Id);
             // The format has only signed integers; larger ids are stored in their bits.
             let number = if is_id && kind == Number::I32 { Number::U32 } else { kind };

@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-use crate::data::Particles;
+use crate::data::info::{PARTICLE_SPACING, TIME};
+use crate::data::{ParticleInfo, Particles};
 
 /// Points per write.
 const ROWS: usize = 2048;
@@ -21,7 +22,8 @@ struct Attribute<'a> {
 }
 
 /// Writes particles to `out`. Attributes that are present become `v` (Houdini's name of the velocity, used for motion
-/// blur), `density`, `pressure` and `id`; other attributes keep their names.
+/// blur), `density`, `pressure` and `id`; other attributes keep their names. `time` and `particle_spacing` are attributes
+/// of the whole.
 ///
 /// # Errors
 /// Those of `out`; `InvalidInput` if [`Particles::check`] fails.
@@ -43,19 +45,15 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
         words: bytemuck::cast_slice(&attribute.values),
     }));
 
+    let detail = detail(particles.info);
     out.write_all(b"BgeoV")?;
     // Version; points, primitives, groups of both; attributes of points, vertices, primitives and the whole.
     // The check has bounded the number of particles.
-    for word in [5, particles.len() as i32, 0, 0, 0, attributes.len() as i32, 0, 0, 0] {
+    for word in [5, particles.len() as i32, 0, 0, 0, attributes.len() as i32, 0, 0, detail.len() as i32] {
         out.write_all(&word.to_be_bytes())?;
     }
     for Attribute { name, kind, components, .. } in &attributes {
-        out.write_all(&(name.len() as u16).to_be_bytes())?;
-        out.write_all(name.as_bytes())?;
-        out.write_all(&(*components as u16).to_be_bytes())?;
-        out.write_all(&kind.to_be_bytes())?;
-        // The default value.
-        out.write_all(&[0; 12][..4 * components])?;
+        describe(out, name, *kind, *components)?;
     }
     let mut buffer = Vec::with_capacity(ROWS * 4 * 10);
     for first in (0..particles.len()).step_by(ROWS) {
@@ -70,6 +68,29 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
         }
         out.write_all(&buffer)?;
     }
+    for (name, _) in &detail {
+        describe(out, name, 0, 1)?;
+    }
+    for (_, value) in &detail {
+        out.write_all(&value.to_be_bytes())?;
+    }
     // No extra data, then the end marker.
     out.write_all(&[0, 0xff])
+}
+
+/// Writes the description of an attribute.
+fn describe(out: &mut dyn Write, name: &str, kind: i32, components: usize) -> io::Result<()> {
+    out.write_all(&(name.len() as u16).to_be_bytes())?;
+    out.write_all(name.as_bytes())?;
+    out.write_all(&(components as u16).to_be_bytes())?;
+    out.write_all(&kind.to_be_bytes())?;
+    // The default value.
+    out.write_all(&[0; 12][..4 * components])
+}
+
+/// Name and value of the attributes of the whole. The format has only single precision.
+fn detail(info: ParticleInfo) -> Vec<(&'static str, f32)> {
+    let ParticleInfo { time, particle_spacing } = info.credible();
+    let time = time.map(|time| (TIME, time as f32));
+    time.into_iter().chain(particle_spacing.map(|spacing| (PARTICLE_SPACING, spacing))).collect()
 }

@@ -1,7 +1,7 @@
 //! Particles in host memory, as plain arrays.
 
-use super::Attribute;
 use super::columns::Column;
+use super::{Attribute, ParticleInfo};
 use crate::error::IoError;
 
 /// A set of particles, one array per attribute. The order of the particles is arbitrary; `ids` identify them.
@@ -25,6 +25,8 @@ pub struct Particles {
     /// [`read_particles_with_attributes`](crate::read_particles_with_attributes). PLY, VTK, VTU, BGEO and NPZ files
     /// store those that have no field above.
     pub attributes: Vec<Attribute>,
+    /// Time and particle spacing, where they are known.
+    pub info: ParticleInfo,
 }
 
 impl Particles {
@@ -62,6 +64,12 @@ impl Particles {
     #[must_use]
     pub fn with_attributes(self, attributes: Vec<Attribute>) -> Self {
         Self { attributes, ..self }
+    }
+
+    /// Sets the time and the particle spacing.
+    #[must_use]
+    pub fn with_info(self, info: ParticleInfo) -> Self {
+        Self { info, ..self }
     }
 
     /// The attributes without a field, which files store under their names.

@@ -1,6 +1,7 @@
 //! The header: text lines that name the encoding, the elements and their properties.
 
 use super::source::Source;
+use crate::data::ParticleInfo;
 use crate::number::Number;
 
 /// How the numbers after the header are stored.
@@ -18,6 +19,8 @@ pub(super) struct Header {
     pub(super) encoding: Encoding,
     /// In the order of the file.
     pub(super) elements: Vec<Element>,
+    /// From comments with a name and a number.
+    pub(super) info: ParticleInfo,
 }
 
 /// A table of `count` rows.
@@ -51,13 +54,17 @@ impl Header {
         if source.line()?.is_none_or(|line| line.trim_ascii_end() != b"ply") {
             return Err("it does not begin with the line `ply`".to_owned());
         }
-        let (mut encoding, mut elements) = (None, Vec::<Element>::new());
+        let (mut encoding, mut elements, mut info) = (None, Vec::<Element>::new(), ParticleInfo::default());
         loop {
             let line_number = source.line_number() + 1;
             let line = source.line()?.ok_or("its header has no line `end_header`: it was cut short")?;
             let line = String::from_utf8_lossy(line);
             let words: Vec<&str> = line.split_ascii_whitespace().collect();
             let parsed = match words[..] {
+                ["comment" | "obj_info", name, value] => {
+                    value.parse().into_iter().for_each(|value| info.set(name, value));
+                    Ok(())
+                }
                 [] | ["comment" | "obj_info", ..] => Ok(()),
                 ["format", name, version] => {
                     self::encoding(name, version).map(|found| encoding = Some(found))
@@ -74,7 +81,7 @@ impl Header {
             parsed.map_err(|reason| format!("line {line_number} (`{text:.60}`): {reason}"))?;
         }
         let encoding = encoding.ok_or("its header has no line `format`")?;
-        Ok(Self { encoding, elements })
+        Ok(Self { encoding, elements, info })
     }
 
     pub(super) fn element(&self, name: &str) -> Option<&Element> {

@@ -67,6 +67,7 @@ fn particles(mut source: Source, wanted: Wanted) -> Result<Particles, String> {
         densities: vertices.scalars(Field::Density),
         pressures: vertices.scalars(Field::Pressure),
         attributes,
+        info: header.info,
     })
 }
 

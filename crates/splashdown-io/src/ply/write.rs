@@ -2,9 +2,8 @@
 
 use std::io::{self, Write};
 
-use crate::data::Attribute;
-use crate::data::Mesh;
-use crate::data::Particles;
+use crate::data::info::{PARTICLE_SPACING, TIME};
+use crate::data::{Attribute, Mesh, ParticleInfo, Particles};
 
 /// Rows per write; the buffer fits into the cache.
 const ROWS: usize = 2048;
@@ -27,6 +26,7 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
     columns.extend(attribute_columns(particles.other_attributes(), &names));
 
     begin(out)?;
+    comments(out, particles.info)?;
     element(out, "vertex", particles.len(), &columns)?;
     writeln!(out, "end_header")?;
     rows(out, particles.len(), &columns)
@@ -95,6 +95,13 @@ fn bytes<T: bytemuck::NoUninit>(values: &[T]) -> &[u8] {
 
 fn begin(out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment written by Splashdown; SI units, y is up")
+}
+
+/// Writes time and particle spacing, with the fewest digits from which the same numbers are read.
+fn comments(out: &mut dyn Write, info: ParticleInfo) -> io::Result<()> {
+    let ParticleInfo { time, particle_spacing } = info.credible();
+    time.iter().try_for_each(|time| writeln!(out, "comment {TIME} {time}"))?;
+    particle_spacing.iter().try_for_each(|spacing| writeln!(out, "comment {PARTICLE_SPACING} {spacing}"))
 }
 
 /// Writes the header lines of one element; a column is its bytes, its bytes per row, and its type and names.

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::data::Particles;
 use crate::data::columns::{Wanted, triples};
+use crate::data::{ParticleInfo, Particles};
 use crate::error::IoError;
 use crate::input::{content, not_particles};
 use crate::number::Number;
@@ -29,6 +29,8 @@ struct Cursor<'a> {
 #[derive(Clone, Copy, PartialEq)]
 enum Owner {
     Points(usize),
+    /// The points and cells together, as single numbers.
+    Whole,
     Others(usize),
 }
 
@@ -45,7 +47,7 @@ impl Cursor<'_> {
             _ => return Err("its third line is neither `ASCII` nor `BINARY`".to_owned()),
         };
         let mut particles = Particles::default();
-        let mut owner = Owner::Others(0);
+        let mut owner = Owner::Whole;
         while let Ok(words) = self.words() {
             let word = |n: usize| words.get(n).map_or("", String::as_str);
             match word(0) {
@@ -116,6 +118,7 @@ impl Cursor<'_> {
             // A field can precede `POINT_DATA` and have a length of its own.
             let owner = match owner {
                 Owner::Points(points) if points == tuples => owner,
+                Owner::Whole if tuples == 1 => owner,
                 _ => Owner::Others(tuples),
             };
             self.array(name, components, kind, owner, particles)?;
@@ -136,6 +139,11 @@ impl Cursor<'_> {
                 let values = self.numbers(points, components, kind)?;
                 self.wanted.append(particles, name, components, &values)
             }
+            Owner::Whole if components == 1 && ParticleInfo::has(name) => {
+                self.numbers(1, 1, kind)?.into_iter().for_each(|value| particles.info.set(name, value));
+                Ok(())
+            }
+            Owner::Whole => self.skip(1, components, kind),
             Owner::Points(rows) | Owner::Others(rows) => self.skip(rows, components, kind),
         }
     }

@@ -1,30 +1,33 @@
-//! The writers of binary files: a grid of points, or of triangles.
+//! The writers of binary files: a grid of points, or a surface of triangles.
 //!
-//! Both are of the kind `UNSTRUCTURED_GRID`, which more programs read than `POLYDATA` (`meshio`, `splashsurf`).
+//! Particles are of the kind `UNSTRUCTURED_GRID`, which `meshio` and `splashsurf` read, and meshes of the kind `POLYDATA`,
+//! which the filters of VTK for surfaces require.
 
 use std::io::{self, Write};
 
-use crate::data::Attribute;
-use crate::data::Mesh;
-use crate::data::Particles;
+use crate::data::{Attribute, Mesh, ParticleInfo, Particles};
 
 /// Numbers converted to big-endian before each write.
 const CHUNK: usize = 8192;
 
-/// Cell types of VTK.
+/// `VTK_VERTEX` among VTK's cell types.
 const VTK_VERTEX: u32 = 1;
-const VTK_TRIANGLE: u32 = 5;
 
 /// Writes particles to `out`. Each particle is a cell, as in a VTU file; attributes that are present become the point
-/// arrays `velocity`, `density`, `pressure` and `id`, other attributes those of their names.
+/// arrays `velocity`, `density`, `pressure` and `id`, other attributes those of their names. Time and particle spacing
+/// are the arrays `TimeValue` and `particle_spacing` of the field data.
 ///
 /// # Errors
 /// Those of `out`; `InvalidInput` if [`Particles::check`] fails.
 pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Result<()> {
     particles.check()?;
     let count = particles.len();
-    begin(out, &particles.positions)?;
-    cells(out, count, 1, VTK_VERTEX, (0..count as u32).flat_map(|point| [1, point]))?;
+    begin(out, "UNSTRUCTURED_GRID")?;
+    field(out, particles.info)?;
+    points(out, &particles.positions)?;
+    cells(out, "CELLS", count, 1, (0..count as u32).flat_map(|point| [1, point]))?;
+    writeln!(out, "CELL_TYPES {count}")?;
+    words(out, std::iter::repeat_n(VTK_VERTEX, count))?;
     writeln!(out, "POINT_DATA {count}")?;
     vectors(out, "VECTORS velocity", &particles.velocities)?;
     scalars(out, "density float", bytemuck::cast_slice(&particles.densities))?;
@@ -40,33 +43,51 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
 /// Those of `out`; `InvalidInput` if [`Mesh::check`] fails.
 pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     mesh.check()?;
-    begin(out, &mesh.vertices)?;
-    cells(out, mesh.len(), 3, VTK_TRIANGLE, mesh.triangles.iter().flat_map(|&[a, b, c]| [3, a, b, c]))?;
+    begin(out, "POLYDATA")?;
+    points(out, &mesh.vertices)?;
+    cells(out, "POLYGONS", mesh.len(), 3, mesh.triangles.iter().flat_map(|&[a, b, c]| [3, a, b, c]))?;
     writeln!(out, "POINT_DATA {}", mesh.vertices.len())?;
-    // `meshio` cannot read the keyword `NORMALS`.
-    vectors(out, "VECTORS normals", &mesh.normals)?;
+    vectors(out, "NORMALS normals", &mesh.normals)?;
     vectors(out, "VECTORS velocity", &mesh.velocities)?;
     mesh.attributes.iter().try_for_each(|attribute| array(out, attribute))
 }
 
-fn begin(out: &mut dyn Write, points: &[[f32; 3]]) -> io::Result<()> {
-    writeln!(out, "# vtk DataFile Version 3.0\nwritten by Splashdown; SI units, y is up\nBINARY")?;
-    writeln!(out, "DATASET UNSTRUCTURED_GRID\nPOINTS {} float", points.len())?;
+fn begin(out: &mut dyn Write, kind: &str) -> io::Result<()> {
+    writeln!(
+        out,
+        "# vtk DataFile Version 3.0\nwritten by Splashdown; SI units, y is up\nBINARY\nDATASET {kind}"
+    )
+}
+
+/// Writes time and particle spacing.
+fn field(out: &mut dyn Write, info: ParticleInfo) -> io::Result<()> {
+    let fields = info.fields();
+    if !fields.is_empty() {
+        writeln!(out, "FIELD FieldData {}", fields.len())?;
+    }
+    for (name, value) in fields {
+        writeln!(out, "{name} 1 1 double")?;
+        out.write_all(&value.to_be_bytes())?;
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+fn points(out: &mut dyn Write, points: &[[f32; 3]]) -> io::Result<()> {
+    writeln!(out, "POINTS {} float", points.len())?;
     words(out, bytemuck::cast_slice::<_, u32>(points).iter().copied())
 }
 
-/// Writes the cells, each as its number of points and the points, and their types.
+/// Writes cells, each as its number of points and the points.
 fn cells(
     out: &mut dyn Write,
+    keyword: &str,
     count: usize,
     corners: usize,
-    kind: u32,
     list: impl Iterator<Item = u32>,
 ) -> io::Result<()> {
-    writeln!(out, "CELLS {count} {}", count * (corners + 1))?;
-    words(out, list)?;
-    writeln!(out, "CELL_TYPES {count}")?;
-    words(out, std::iter::repeat_n(kind, count))
+    writeln!(out, "{keyword} {count} {}", count * (corners + 1))?;
+    words(out, list)
 }
 
 /// Writes an attribute as a point array of its name.

@@ -6,8 +6,8 @@ use std::path::Path;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::decode::{Appended, Encoding, Layout};
-use crate::data::Particles;
 use crate::data::columns::{Wanted, triples};
+use crate::data::{ParticleInfo, Particles};
 use crate::error::IoError;
 use crate::input::{MAX_COUNT, content, not_particles};
 use crate::limit::Budget;
@@ -59,13 +59,27 @@ fn parse(bytes: &[u8], wanted: Wanted) -> Result<Particles, String> {
         (None, Some(node)) => Some(Appended::base64(node.text().unwrap_or_default())?),
         (None, None) => None,
     };
-    let mut particles = Particles::default();
     let budget = RefCell::new(Budget::of_file(bytes.len() as u64));
+    let arrays = Arrays { layout, appended: appended.as_ref(), budget: &budget };
+    let mut particles = Particles { info: info(root, &arrays), ..Particles::default() };
     for piece in root.descendants().filter(|node| node.has_tag_name("Piece")) {
-        Piece { piece, layout, appended: appended.as_ref(), wanted, budget: &budget }
-            .add_to(&mut particles)?;
+        Piece { piece, wanted, arrays: &arrays }.add_to(&mut particles)?;
     }
     Ok(particles)
+}
+
+/// Time and particle spacing of the field data; arrays that cannot be read are ignored.
+fn info(root: Node<'_, '_>, arrays: &Arrays<'_>) -> ParticleInfo {
+    let mut info = ParticleInfo::default();
+    let sections = root.descendants().filter(|node| node.has_tag_name("FieldData"));
+    for array in sections.flat_map(|section| section.children()) {
+        let name = array.attribute("Name").unwrap_or_default();
+        if ParticleInfo::has(name) {
+            let values = arrays.values(array, 1, 1).unwrap_or_default();
+            values.into_iter().for_each(|value| info.set(name, value));
+        }
+    }
+    info
 }
 
 /// Splits a file into its XML, closed where raw bytes interrupt it, and these bytes, which follow an underscore.
@@ -90,10 +104,8 @@ fn split(bytes: &[u8]) -> Result<(String, Option<&[u8]>), String> {
 /// A piece of the grid with its points.
 struct Piece<'a, 'x> {
     piece: Node<'a, 'x>,
-    layout: Layout,
-    appended: Option<&'a Appended<'a>>,
     wanted: Wanted,
-    budget: &'a RefCell<Budget>,
+    arrays: &'a Arrays<'a>,
 }
 
 impl Piece<'_, '_> {
@@ -113,20 +125,29 @@ impl Piece<'_, '_> {
         };
         if count > 0 {
             let points = arrays("Points").next().ok_or("its piece has no array of points")?;
-            let values = self.values(points, count, 3)?;
+            let values = self.arrays.values(points, count, 3)?;
             particles.positions.extend(triples(&values));
         }
         for array in arrays("PointData") {
             let name = array.attribute("Name").unwrap_or_default();
             let components = array.attribute("NumberOfComponents").unwrap_or("1").parse().unwrap_or(0);
             if self.wanted.has(name, components) {
-                let values = self.values(array, count, components)?;
+                let values = self.arrays.values(array, count, components)?;
                 self.wanted.append(particles, name, components, &values)?;
             }
         }
         Ok(())
     }
+}
 
+/// The arrays of a file.
+struct Arrays<'a> {
+    layout: Layout,
+    appended: Option<&'a Appended<'a>>,
+    budget: &'a RefCell<Budget>,
+}
+
+impl Arrays<'_> {
     fn values(&self, array: Node<'_, '_>, rows: usize, components: usize) -> Result<Vec<f64>, String> {
         let name = array.attribute("Name").unwrap_or("Points");
         let total = rows.checked_mul(components).ok_or_else(|| format!("array `{name}` is too large"))?;

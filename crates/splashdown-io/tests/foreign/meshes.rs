@@ -54,7 +54,7 @@ fn check(found: &[Found; 2], arrays: &[(&str, Sums)]) {
 }
 
 #[test]
-fn vtk_and_meshio_open_legacy_vtk() {
+fn vtk_opens_surfaces() {
     let mesh = given();
     let vectors = [
         ("positions", Sums::vectors(&mesh.vertices)),
@@ -63,14 +63,11 @@ fn vtk_and_meshio_open_legacy_vtk() {
         ("temperature", Sums::numbers(&mesh.attributes[0].values)),
         ("force", Sums::vectors(mesh.attributes[1].values.as_chunks().0)),
     ];
-    if let Some(found) = found("vtk_opens_legacy_vtk", "vtk", "vtk") {
+    for (reader, ending) in [("vtk-surface", "vtk"), ("vtp", "vtp")] {
+        let Some(found) = found("vtk_opens_surfaces", reader, ending) else { return };
         check(&found, &vectors);
         check(&found, &[("cells", Sums::corners(&mesh.triangles, true))]);
-    }
-    if let Some(found) = found("meshio_opens_legacy_vtk", "meshio", "vtk") {
-        check(&found, &vectors[..1]);
-        check(&found, &vectors[2..]);
-        check(&found, &[("cells", Sums::corners(&mesh.triangles, false))]);
+        same(&found[0], "active normals", &Sums::vectors(&mesh.normals));
     }
 }
 

@@ -53,6 +53,11 @@ impl Sums {
         if flat { Self::of(values.flatten().map(|corner| [corner])) } else { Self::of(values) }
     }
 
+    /// The sum of the values.
+    pub fn sum(&self) -> f64 {
+        self.sum
+    }
+
     /// Whether another array has the same shape and the same sums, within this fraction of the absolute values.
     pub fn agrees(&self, other: &Self, tolerance: f64) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= tolerance * self.amount.max(other.amount) + 1e-12;

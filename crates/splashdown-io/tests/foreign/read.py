@@ -17,29 +17,61 @@ def vtk_arrays(grid):
     data = grid.GetPointData()
     arrays = {data.GetArrayName(n): to_numpy(data.GetArray(n)) for n in range(data.GetNumberOfArrays())}
     arrays["positions"] = to_numpy(grid.GetPoints().GetData())
-    arrays["cells"] = to_numpy(grid.GetCells().GetConnectivityArray())
+    if grid.IsA("vtkUnstructuredGrid"):
+        cells = grid.GetCells()
+    else:
+        cells = grid.GetPolys() if grid.GetNumberOfPolys() else grid.GetVerts()
+    arrays["cells"] = to_numpy(cells.GetConnectivityArray())
+    if data.GetNormals():
+        arrays["active normals"] = to_numpy(data.GetNormals())
+    field = grid.GetFieldData()
+    for n in range(field.GetNumberOfArrays()):
+        arrays[f"field {field.GetArrayName(n)}"] = to_numpy(field.GetArray(n))
     return arrays
+
+
+def vtk_legacy_of(reader, path):
+    reader.SetFileName(path)
+    reader.ReadAllScalarsOn()
+    reader.ReadAllVectorsOn()
+    reader.ReadAllNormalsOn()
+    reader.ReadAllFieldsOn()
+    reader.Update()
+    return vtk_arrays(reader.GetOutput())
 
 
 def vtk_legacy(path):
     import vtk
 
-    reader = vtk.vtkUnstructuredGridReader()
+    return vtk_legacy_of(vtk.vtkUnstructuredGridReader(), path)
+
+
+def vtk_legacy_surface(path):
+    import vtk
+
+    return vtk_legacy_of(vtk.vtkPolyDataReader(), path)
+
+
+def vtk_xml_of(reader, path):
+    import vtk
+
     reader.SetFileName(path)
-    reader.ReadAllScalarsOn()
-    reader.ReadAllVectorsOn()
-    reader.ReadAllNormalsOn()
+    reader.UpdateInformation()
+    times = reader.GetOutputInformation(0).Get(vtk.vtkStreamingDemandDrivenPipeline.TIME_STEPS())
     reader.Update()
-    return vtk_arrays(reader.GetOutput())
+    return {**vtk_arrays(reader.GetOutput()), "time steps": times or []}
 
 
 def vtk_xml(path):
     import vtk
 
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(path)
-    reader.Update()
-    return vtk_arrays(reader.GetOutput())
+    return vtk_xml_of(vtk.vtkXMLUnstructuredGridReader(), path)
+
+
+def vtk_xml_surface(path):
+    import vtk
+
+    return vtk_xml_of(vtk.vtkXMLPolyDataReader(), path)
 
 
 def vtk_ply(path):
@@ -65,6 +97,7 @@ def of_meshio(path):
     cells = cells.get("triangle", cells.get("vertex"))
     # The properties of PLY particles are separate arrays.
     data = {name: values for name, values in mesh.point_data.items()}
+    data.update({f"field {name}": values for name, values in mesh.field_data.items()})
     return {"positions": mesh.points, **({} if cells is None else {"cells": cells}), **data}
 
 
@@ -177,7 +210,9 @@ def blender(path):
 
 READERS = {
     "vtk": (vtk_legacy, "vtk"),
+    "vtk-surface": (vtk_legacy_surface, "vtk"),
     "vtu": (vtk_xml, "vtk"),
+    "vtp": (vtk_xml_surface, "vtk"),
     "vtk-ply": (vtk_ply, "vtk"),
     "meshio": (of_meshio, "meshio"),
     "trimesh": (of_trimesh, "trimesh"),
