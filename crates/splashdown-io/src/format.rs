@@ -68,6 +68,7 @@ impl Format {
             write_particles: Some(|path, particles| {
                 write_particles(path, particles, vtk::write_particles_to)
             }),
+            read_mesh: Some(vtk::read_mesh),
             write_mesh: Some(|path, mesh| write_mesh(path, mesh, vtk::write_mesh_to)),
             has_velocities: true,
             has_attributes: true,
@@ -90,6 +91,7 @@ impl Format {
             write_particles: Some(|path, particles| {
                 write_particles(path, particles, vtu::write_poly_particles_to)
             }),
+            read_mesh: Some(vtu::read_mesh),
             write_mesh: Some(|path, mesh| write_mesh(path, mesh, vtu::write_mesh_to)),
             has_velocities: true,
             has_attributes: true,

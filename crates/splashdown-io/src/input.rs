@@ -50,6 +50,27 @@ pub(crate) fn push_fan(triangles: &mut Vec<[u32; 3]>, corners: &[u32]) -> Result
     }
 }
 
+/// Adds polygons. `corners` are the vertex numbers of all polygons, `ends` the positions after the last corner of each;
+/// those for whose number `is_polygon` is false are skipped.
+pub(crate) fn push_polygons(
+    triangles: &mut Vec<[u32; 3]>,
+    corners: &[u32],
+    ends: &[u32],
+    is_polygon: impl Fn(usize) -> bool,
+) -> Result<(), String> {
+    let mut start = 0;
+    for (number, &end) in ends.iter().enumerate() {
+        let polygon = corners.get(start..end as usize).ok_or_else(|| {
+            format!("polygon {number} ends at {end}, which is not a position in its list of corners")
+        })?;
+        start = end as usize;
+        if is_polygon(number) {
+            push_fan(triangles, polygon)?;
+        }
+    }
+    Ok(())
+}
+
 /// Collects separate triangles into a mesh in which vertices at the same position are merged.
 #[derive(Default)]
 pub(crate) struct Welder {

@@ -121,6 +121,15 @@ pub(crate) fn whole(value: f64) -> Option<u32> {
     (value >= 0.0 && value <= f64::from(u32::MAX) && value.fract() == 0.0).then_some(value as u32)
 }
 
+/// All values as integers.
+///
+/// # Errors
+/// A message that names the first that is not one.
+pub(crate) fn wholes(values: &[f64], what: &str) -> Result<Vec<u32>, String> {
+    let whole = |&value: &f64| whole(value).ok_or_else(|| format!("{value} is not a {what}"));
+    values.iter().map(whole).collect()
+}
+
 /// Appends the numbers of all rows; `from` decodes one from its bytes, lowest first.
 fn each<const N: usize, T>(rows: &[u8], cells: Cells, values: &mut Vec<T>, from: impl Fn([u8; N]) -> T) {
     let Cells { at, components, stride, big_endian } = cells;

@@ -38,7 +38,7 @@ fn refused(name: &str, contents: &[u8], reason: &str) {
 /// The bytes of a small mesh in each format.
 fn whole_files() -> Vec<(&'static str, Vec<u8>)> {
     let torus = common::torus(1.0, 0.25, 6, 5);
-    let mut files: Vec<_> = ["whole.obj", "whole.stl", "whole.ply"]
+    let mut files: Vec<_> = ["whole.obj", "whole.stl", "whole.ply", "whole.vtk", "whole.vtp"]
         .into_iter()
         .map(|name| {
             let folder = tempfile::tempdir().unwrap();
@@ -67,9 +67,9 @@ fn files_of_other_formats_are_refused() {
     );
     let unknown = read_mesh(&folder.path().join("boat.fbx")).unwrap_err().to_string();
     let endings = Format::endings(Format::reads_meshes);
-    assert!(endings.len() == 5 && endings.iter().all(|ending| unknown.contains(ending)), "{unknown}");
+    assert!(endings.len() == 7 && endings.iter().all(|ending| unknown.contains(ending)), "{unknown}");
     assert!(matches!(read_mesh(&folder.path().join("boat")), Err(IoError::UnknownFormat { .. })));
-    for name in ["folder.obj", "folder.stl", "folder.ply", "folder.glb"] {
+    for name in ["folder.obj", "folder.stl", "folder.ply", "folder.glb", "folder.vtk", "folder.vtp"] {
         let path = folder.path().join(name);
         fs::create_dir(&path).unwrap();
         let message = read_mesh(&path).unwrap_err().to_string();
@@ -88,7 +88,7 @@ fn files_of_other_formats_are_refused() {
 #[cfg(unix)]
 fn a_device_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["endless.obj", "endless.stl", "endless.ply", "endless.glb"] {
+    for name in ["endless.obj", "endless.stl", "endless.ply", "endless.glb", "endless.vtk", "endless.vtp"] {
         let path = folder.path().join(name);
         std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
         let message = read_mesh(&path).unwrap_err().to_string();
@@ -236,7 +236,7 @@ fn a_binary_file_cut_at_any_byte_is_refused() {
     for (name, whole) in whole_files() {
         let (keep, path) = file(name, &whole);
         assert!(read_mesh(&path).is_ok(), "{name}: {:?}", read_mesh(&path));
-        let mut read = 0;
+        let (mut read, triangles) = (0, read_mesh(&path).unwrap().len());
         // Truncated in place, which is hundreds of times as fast as writing each length.
         let cut = fs::File::options().write(true).open(&path).unwrap();
         for length in (0..whole.len()).rev() {
@@ -245,6 +245,7 @@ fn a_binary_file_cut_at_any_byte_is_refused() {
                 Ok(mesh) => {
                     read += 1;
                     assert!(mesh.check().is_ok() && !mesh.is_empty());
+                    assert!(!name.contains(".vt") || mesh.len() == triangles, "{name} of {length} bytes");
                 }
                 Err(error) => assert!(error.to_string().contains(name), "{error}"),
             }
@@ -253,6 +254,10 @@ fn a_binary_file_cut_at_any_byte_is_refused() {
         match name {
             // A shorter OBJ file is valid; other text files may lack their last digits or line feed.
             "whole.obj" => assert!(read > 0),
+            // The normals at its end are not read.
+            "whole.vtk" => assert!(read < 30 * 12 + 100, "{read}"),
+            // After the arrays of the triangles.
+            "whole.vtp" => assert_eq!(read, "\n</AppendedData>\n</VTKFile>\n".len()),
             // Every solid but the last may be missing.
             "text.stl" => assert!(read <= 6 * 9, "{read}"),
             "text.ply" | "whole.gltf" => assert!(read <= 2, "{name}: {read}"),
@@ -267,7 +272,7 @@ proptest! {
 
     #[test]
     fn a_file_with_changed_bytes_does_not_cause_a_panic(
-        which in 0_usize..7,
+        which in 0_usize..9,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
     ) {
         let (name, mut bytes) = whole_files().swap_remove(which);
@@ -358,4 +363,77 @@ fn data_that_grows_beyond_the_limit_is_refused() {
     let bytes = glb(&cube.scene(&format!("[{}]", roots.join(","))));
     assert!(bytes.len() < 1 << 18, "{}", bytes.len());
     refused("many.glb", &bytes, "may take 256.0 MiB");
+}
+
+/// A text file of two triangles with the lines that follow its points.
+fn legacy(kind: &str, cells: &str) -> Vec<u8> {
+    format!(
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET {kind}\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\n{cells}\n"
+    )
+    .into_bytes()
+}
+
+#[test]
+fn malformed_vtk_files_are_refused_with_the_reason() {
+    for (kind, cells, reason) in [
+        ("STRUCTURED_GRID", "", "STRUCTURED_GRID"),
+        ("POLYDATA", "", "no triangles"),
+        ("POLYDATA", "POLYGONS 1 4\n3 0 1", "cut short"),
+        ("POLYDATA", "POLYGONS 1 3\n3 0 1", "cut short"),
+        ("POLYDATA", "POLYGONS 2 4\n3 0 1 2", "1 cells instead of 2"),
+        ("POLYDATA", "POLYGONS 1 4\n3 0 1 4", "uses vertex 4"),
+        ("POLYDATA", "POLYGONS 1 4\n3 0 1 -1", "-1 is not a vertex number"),
+        ("POLYDATA", "POLYGONS 1 3\n2 0 1", "2 corners"),
+        ("POLYDATA", "POLYGONS 99999999999 4\n3 0 1 2", "instead of 99999999999"),
+        ("POLYDATA", "POLYGONS 1 99999999999\n3 0 1 2", "cut short"),
+        ("POLYDATA", "POLYGONS 1 18446744073709551615\n3 0 1 2", "too large"),
+        (
+            "POLYDATA",
+            "POLYGONS 2 3\nOFFSETS vtktypeint64\n0 5\nCONNECTIVITY vtktypeint64\n0 1 2",
+            "ends at 5",
+        ),
+        ("POLYDATA", "POLYGONS 3 3\nOFFSETS int\n0 3 1\nCONNECTIVITY int\n0 1 2", "ends at 1"),
+        ("POLYDATA", "POLYGONS 2 3\nOFFSETS float\n0 nan\nCONNECTIVITY int\n0 1 2", "NaN is not a count"),
+        ("POLYDATA", "TRIANGLE_STRIPS 1 4\n3 0 1 2", "strips"),
+        ("POLYDATA", "SPHERES 1", "SPHERES"),
+        ("UNSTRUCTURED_GRID", "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10", "no triangles"),
+        ("UNSTRUCTURED_GRID", "CELLS 1 4\n3 0 1 2", "no triangles"),
+    ] {
+        refused("given.vtk", &legacy(kind, cells), reason);
+    }
+    refused("points.vtk", &legacy("POLYDATA", "VERTICES 1 2\n1 0"), "no triangles");
+
+    let xml = |piece: &str| {
+        format!(
+            "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\" {piece}</Piece></PolyData></VTKFile>"
+        )
+    };
+    let array = |name: &str, text: &str| {
+        format!("<DataArray type=\"Float64\" Name=\"{name}\" format=\"ascii\">{text}</DataArray>")
+    };
+    let points = format!("<Points>{}</Points>", array("Points", "0 0 0 1 0 0 0 1 0"));
+    let polys = |corners: &str, ends: &str| {
+        let arrays = array("connectivity", corners) + &array("offsets", ends);
+        xml(&format!("NumberOfPolys=\"1\">{points}<Polys>{arrays}</Polys>"))
+    };
+    let (_keep, path) = file("good.vtp", polys("0 1 2", "3").as_bytes());
+    assert_eq!(read_mesh(&path).unwrap().triangles, [[0, 1, 2]], "negative control");
+    for (content, reason) in [
+        (polys("0 1 3", "3"), "vertex number 3"),
+        (polys("0 1 0.5", "3"), "0.5 is not a vertex number"),
+        (polys("0 1", "2"), "2 corners"),
+        (polys("0 1 2", "4"), "3 numbers for 4"),
+        (polys("0 1 2", "-3"), "-3 is not a count"),
+        (polys("0 1 2", "1e18"), "is not a count"),
+        (polys("0 1 2", "nan"), "NaN is not a count"),
+        (xml(&format!("NumberOfPolys=\"1\">{points}")), "no array `offsets`"),
+        (xml("NumberOfPolys=\"1\">"), "no array of points"),
+        (xml(&format!("NumberOfPolys=\"-1\">{points}")), "-1"),
+        (xml(&format!("NumberOfPolys=\"99999999999\">{points}")), "99999999999"),
+        (xml(&format!("NumberOfStrips=\"1\">{points}")), "strips"),
+        (xml(&format!(">{points}")), "no triangles"),
+        (xml(">").replace("PolyData", "UnstructuredGrid"), "VTKFile of type PolyData is read"),
+    ] {
+        refused("given.vtp", content.as_bytes(), reason);
+    }
 }

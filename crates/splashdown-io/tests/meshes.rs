@@ -41,7 +41,7 @@ fn meshes_round_trip_in_every_format() {
         triangle_positions(&torus),
         "the comparison must detect one flipped triangle"
     );
-    for name in ["torus.obj", "torus.stl", "torus.ply", "TORUS.STL"] {
+    for name in ["torus.obj", "torus.stl", "torus.ply", "TORUS.STL", "torus.vtk", "torus.vtp"] {
         let path = folder.path().join(name);
         let bytes = write_mesh(&path, &torus).unwrap();
         assert_eq!(bytes, fs::metadata(&path).unwrap().len());
@@ -241,4 +241,38 @@ fn gltf_strips_and_fans_become_triangles() {
         assert_eq!(mesh.topology().unwrap().flipped_edges, 0, "mode {mode}");
         assert!((mesh.area() - 1.0).abs() < 1e-6);
     }
+}
+
+#[test]
+fn vtk_files_of_other_programs_are_read() {
+    let folder = folder();
+    let path = folder.path().join("given.vtk");
+    let read = |version: &str, kind: &str, cells: &str| {
+        let points = "POINTS 5 double\n0 0 0 1 0 0 1 1 0 0 1 0 0.5 0.5 1";
+        let text = format!(
+            "# vtk DataFile Version {version}\n\nASCII\nDATASET {kind}\nFIELD FieldData 1\nTimeValue 1 1 double\n0.5\n\
+             {points}\nMETADATA\nINFORMATION 0\n\n{cells}\nCELL_DATA 2\nSCALARS a float 1\nLOOKUP_TABLE default\n1 2\n"
+        );
+        fs::write(&path, text).unwrap();
+        read_mesh(&path).unwrap_or_else(|error| panic!("{error}")).triangles
+    };
+    let both = [[0, 1, 2], [0, 2, 3], [0, 1, 4]];
+    assert_eq!(read("3.0", "POLYDATA", "VERTICES 1 2\n1 4\nPOLYGONS 2 9\n4 0 1 2 3\n3 0 1 4"), both);
+    let new = "POLYGONS 3 7\nOFFSETS vtktypeint64\n0 4 7\nCONNECTIVITY vtktypeint64\n0 1 2 3 0 1 4";
+    assert_eq!(read("5.1", "POLYDATA", new), both);
+    // Cells that are not polygons are skipped.
+    let grid = "CELLS 3 11\n4 0 1 2 3\n1 4\n3 0 1 4\nCELL_TYPES 3\n9\n1\n5";
+    assert_eq!(read("3.0", "UNSTRUCTURED_GRID", grid), both);
+    let changed = grid.replace("\n9\n", "\n10\n");
+    assert_eq!(read("3.0", "UNSTRUCTURED_GRID", &changed), both[2..], "negative control: a tetrahedron");
+
+    // The pieces of a file have vertex numbers of their own.
+    let piece = "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points><DataArray type=\"Float32\" \
+                 NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points><Polys><DataArray \
+                 type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray><DataArray type=\"Int64\" \
+                 Name=\"offsets\" format=\"ascii\">3</DataArray></Polys></Piece>";
+    let path = folder.path().join("given.vtp");
+    let text = format!("<VTKFile type=\"PolyData\"><PolyData>{piece}{piece}</PolyData></VTKFile>");
+    fs::write(&path, text).unwrap();
+    assert_eq!(read_mesh(&path).unwrap().triangles, [[0, 1, 2], [3, 4, 5]]);
 }

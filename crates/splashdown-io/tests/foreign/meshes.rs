@@ -160,7 +160,7 @@ fn blender_opens_glb_and_ply() {
 #[test]
 fn meshes_round_trip() {
     let folder = tempfile::tempdir().unwrap();
-    for ending in ["ply", "obj", "glb"] {
+    for ending in ["ply", "obj", "glb", "vtk", "vtp"] {
         let path = folder.path().join(format!("mesh.{ending}"));
         write_mesh(&path, &given()).unwrap();
         let read = read_mesh(&path).unwrap();
