@@ -1,7 +1,7 @@
 //! Results of a simulation: particles, bodies, the surface.
 
 use splashdown_gpu::{GpuError, Recording, block_on};
-use splashdown_io::{Mesh, Particles};
+use splashdown_io::{Mesh, ParticleInfo, Particles};
 
 use super::Simulation;
 use crate::bodies::{Bodies, BodyState};
@@ -39,7 +39,12 @@ impl Simulation {
         let add = |particles, (quantity, values): &(&Carried, Values)| {
             (quantity.output)(particles, &values.ordered(quantity.kind, &order))
         };
-        Ok(values.iter().fold(Particles::default(), add))
+        Ok(values.iter().fold(Particles::default().with_info(self.particle_info()), add))
+    }
+
+    /// Time and particle spacing, which files of particles contain.
+    fn particle_info(&self) -> ParticleInfo {
+        ParticleInfo::new(self.stats.time, self.params.particle_spacing)
     }
 
     /// The persistent arrays of all carried quantities. All copies are requested before the host waits for the first.
@@ -194,7 +199,8 @@ impl Simulation {
     /// # Errors
     /// Those of the device.
     pub fn droplets(&mut self, surface: &Surface) -> Result<Particles, SimulationError> {
-        Ok(block_on(surface.droplets_async(&mut self.executor))?)
+        let droplets = block_on(surface.droplets_async(&mut self.executor))?;
+        Ok(droplets.with_info(self.particle_info()))
     }
 
     /// Fetches the mesh of the last [`extract`](Self::extract).

@@ -82,8 +82,11 @@ pub fn droplets_of(particles: &Particles, indices: &[u32], particle_spacing: f32
     }
     let ids = if particles.ids.is_empty() { indices.to_vec() } else { of(&particles.ids, indices) };
     let values = vec![2.0 * droplet_radius(particle_spacing); indices.len()];
+    let mut info = particles.info;
+    info.particle_spacing = Some(particle_spacing);
     Particles::from_positions(of(&particles.positions, indices))
         .with_ids(ids)
         .with_velocities(of(&particles.velocities, indices))
         .with_attributes(vec![Attribute { name: WIDTH.to_owned(), components: 1, values }])
+        .with_info(info)
 }
