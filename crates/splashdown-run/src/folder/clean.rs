@@ -53,7 +53,7 @@ impl RunFolder {
         }
         let mut files = 0;
         let mut remove = |path: &Path| files += usize::from(fs::remove_file(path).is_ok());
-        remove(&self.index());
+        self.indices().for_each(|index| remove(&index));
         for series in numbered::ALL {
             for (_, path) in series.files(&self.root) {
                 remove(&path);
@@ -131,8 +131,11 @@ mod tests {
         folder.create_subfolders(all)?;
         let mine = temporary.path().join("particles/notes.txt");
         let frame = folder.particles(3, "ply");
+        let index = folder.index_of("surface");
+        assert!(index.ends_with("mesh/surface.pvd") && folder.index().ends_with("particles/particles.pvd"));
         fs::write(&mine, "mine")?;
         fs::write(&frame, "old")?;
+        fs::write(&index, "old")?;
         fs::write(folder.probe("gauge"), "time (s),height (m)\n")?;
         fs::write(folder.body("crate"), "time (s),position x (m)\n")?;
         fs::write(folder.body_mesh("crate"), "ply")?;
@@ -144,7 +147,7 @@ mod tests {
         assert!(frame.exists());
         fs::write(folder.report(), "{}")?;
         assert_eq!(folder.remove_earlier(), 5);
-        assert!(!frame.exists() && mine.exists() && other.exists() && !folder.probe("gauge").exists());
+        assert!(!frame.exists() && !index.exists() && mine.exists() && other.exists() && !folder.probe("gauge").exists());
         assert!(!folder.body("crate").exists() && !folder.body_mesh("crate").exists());
         // Without a table, the mesh is a file of the user.
         assert!(folder.body_mesh("boat").exists());

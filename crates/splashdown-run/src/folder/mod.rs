@@ -6,7 +6,7 @@ mod numbered;
 
 pub(crate) use clean::remove_partial;
 pub(crate) use create::Subfolders;
-pub(crate) use numbered::{DROPLET_SERIES, DROPLETS, MESHES, PARTICLES, PARTICLES_FILE, SCENE_FILE};
+pub(crate) use numbered::{DROPLET_SERIES, DROPLETS, MESHES, PARTICLES, PARTICLES_STEM, SCENE_FILE, SURFACE};
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ impl RunFolder {
 
     /// Particles of a frame. `ending` has no dot.
     pub fn particles(&self, frame: u32, ending: &str) -> PathBuf {
-        self.numbered("particles", "particles", frame, ending)
+        self.numbered(PARTICLES.folder, PARTICLES_STEM, frame, ending)
     }
 
     /// Spray, foam or bubbles of a frame.
@@ -74,7 +74,12 @@ impl RunFolder {
 
     /// The surface of a frame.
     pub fn mesh(&self, frame: u32, ending: &str) -> PathBuf {
-        self.numbered("mesh", "surface", frame, ending)
+        self.numbered(MESHES.folder, SURFACE, frame, ending)
+    }
+
+    /// Particles, points or the surface of a frame, by the stem of the file name.
+    pub(crate) fn file(&self, stem: &str, frame: u32, ending: &str) -> PathBuf {
+        if stem == SURFACE { self.mesh(frame, ending) } else { self.points(stem, frame, ending) }
     }
 
     /// A picture of a frame.
@@ -135,9 +140,20 @@ impl RunFolder {
         self.scene_parts().iter().any(|path| file_name(path).starts_with(stem))
     }
 
-    /// The ParaView index of the VTU particles.
+    /// ParaView's index of the particles in VTU or VTP files.
     pub fn index(&self) -> PathBuf {
-        self.root.join("particles").join("particles.pvd")
+        self.index_of(PARTICLES_STEM)
+    }
+
+    /// ParaView's index of the files of this stem, beside them.
+    pub(crate) fn index_of(&self, stem: &str) -> PathBuf {
+        self.file(stem, 0, "").with_file_name(format!("{stem}.pvd"))
+    }
+
+    /// The possible indices.
+    pub(crate) fn indices(&self) -> impl Iterator<Item = PathBuf> {
+        let stems = [PARTICLES, DROPLET_SERIES, MESHES].into_iter().flat_map(|series| series.stems);
+        stems.map(move |stem| self.index_of(stem))
     }
 
     /// The table of a probe.

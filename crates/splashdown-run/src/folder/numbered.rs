@@ -10,6 +10,10 @@ use splashdown_io::Format;
 pub const CHECKPOINTS: &str = "checkpoints";
 /// The stem of the names of droplets, and their folder.
 pub const DROPLETS: &str = "droplets";
+/// The stem of the names of particles.
+pub const PARTICLES_STEM: &str = "particles";
+/// The stem of the names of meshes of the surface.
+pub const SURFACE: &str = "surface";
 /// The stem of the names of checkpoints.
 pub const CHECKPOINT: &str = "checkpoint";
 
@@ -24,12 +28,12 @@ pub struct Series {
 
 pub const PARTICLES: Series = Series {
     folder: "particles",
-    stems: &["particles", "spray", "foam", "bubbles"],
+    stems: &[PARTICLES_STEM, "spray", "foam", "bubbles"],
     has_ending: |ending| is_format(ending, |format| format.writes_particles() && !format.is_series()),
 };
 pub const MESHES: Series = Series {
     folder: "mesh",
-    stems: &["surface"],
+    stems: &[SURFACE],
     has_ending: |ending| is_format(ending, |format| format.writes_meshes() && !format.is_series()),
 };
 /// Points in a format of meshes.
@@ -47,12 +51,10 @@ pub const PICTURES: Series =
     Series { folder: "pictures", stems: &["surface", "particles"], has_ending: |ending| ending == "png" };
 /// The stem of the files with the whole scene and all frames.
 pub const SCENE_FILE: &str = "scene";
-/// The stem of the file with the particles of all frames.
-pub const PARTICLES_FILE: &str = "particles";
 /// Such files of resumed runs, numbered by their first frame.
 pub const ANIMATED: Series = Series {
     folder: "",
-    stems: &[SCENE_FILE, PARTICLES_FILE],
+    stems: &[SCENE_FILE, PARTICLES_STEM],
     has_ending: |ending| ending == "glb" || is_format(ending, Format::is_series),
 };
 const CHECKPOINT_SERIES: Series =

@@ -11,7 +11,7 @@ use splashdown::scene::{Format, Scene};
 use splashdown_io::{IoError, Job, Particles, StageFile, WrittenFile};
 
 use crate::RunFolder;
-use crate::folder::{PARTICLES_FILE, SCENE_FILE};
+use crate::folder::{PARTICLES_STEM, SCENE_FILE};
 use stage::{Content, Layout};
 
 /// The files in progress.
@@ -42,7 +42,7 @@ impl Animated {
         let first = resumed_after.map(|frame| frame + 1);
         let mut files = Vec::new();
         for (stem, layout) in
-            [(SCENE_FILE, Layout::scene(scene, bodies)), (PARTICLES_FILE, Layout::particles(scene))]
+            [(SCENE_FILE, Layout::scene(scene, bodies)), (PARTICLES_STEM, Layout::particles(scene))]
         {
             let Some(layout) = layout else { continue };
             let formats: Vec<Format> = match (grows, stem) {

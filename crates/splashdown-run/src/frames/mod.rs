@@ -2,6 +2,7 @@
 //! complete.
 
 mod animated;
+mod index;
 mod tracker;
 
 use std::path::PathBuf;
@@ -17,6 +18,7 @@ use splashdown_io::{FrameWriter, IoError, Job, WrittenFile};
 use crate::RunFolder;
 use crate::folder::DROPLETS;
 use animated::Animated;
+use index::Index;
 use tracker::Tracker;
 
 /// A frame whose files are all complete.
@@ -57,11 +59,17 @@ impl FrameSummary {
     }
 }
 
-/// The droplets and the diffuse particles of a frame, by the stem of their files.
+/// The droplets and the diffuse particles of a frame, by the stem of their files, with time and particle spacing.
 fn points_of(frame: &Frame) -> Vec<(&'static str, Arc<Particles>)> {
     let droplets = frame.droplets.iter().map(|droplets| (DROPLETS, Arc::clone(droplets)));
     let kinds = frame.foam.iter().flat_map(|foam| DiffuseKind::ALL.map(|(kind, name)| (foam, kind, name)));
-    droplets.chain(kinds.map(|(foam, kind, name)| (name, Arc::new(foam.of_kind(kind))))).collect()
+    droplets
+        .chain(
+            kinds.map(|(foam, kind, name)| {
+                (name, Arc::new(foam.of_kind(kind).with_info(frame.particles.info)))
+            }),
+        )
+        .collect()
 }
 
 /// Writes the particles and meshes of a run.
@@ -88,11 +96,11 @@ impl FrameFiles {
     ) -> Result<Self, IoError> {
         let formats = scene.output.formats.clone();
         let animated = Animated::start(&folder, scene, bodies, resumed_after, keep)?;
-        let indexed = formats.contains(&Format::Vtu);
-        let mut tracker = Tracker::new(folder.clone(), indexed);
+        let mut indices = Index::all(&folder, scene);
         if let Some(last) = resumed_after {
-            tracker.add_existing(last, scene.frame_rate);
+            indices.iter_mut().for_each(|index| index.add_existing(last, scene.frame_rate));
         }
+        let tracker = Tracker::new(indices);
         Ok(Self { writer: Arc::new(FrameWriter::start()?), tracker, folder, formats, animated })
     }
 
@@ -156,7 +164,7 @@ impl FrameFiles {
     /// are missing do not delay a frame.
     ///
     /// # Errors
-    /// If the ParaView index cannot be written.
+    /// If an index for ParaView cannot be written.
     pub fn completed(&mut self, no_pictures: bool) -> Result<Vec<CompleteFrame>, IoError> {
         self.tracker.take(&self.writer.written(), no_pictures)
     }

@@ -3,46 +3,24 @@
 use std::collections::{HashSet, VecDeque};
 use std::path::PathBuf;
 
-use splashdown::scene::{Choice, Format};
-use splashdown_io::{IoError, WrittenFile, pvd};
+use splashdown_io::{IoError, WrittenFile};
 
 use super::CompleteFrame;
-use crate::RunFolder;
+use super::index::Index;
 
-/// Frames in the queue of the writer, and the ParaView index of those that are complete.
+/// Frames in the queue of the writer, and ParaView's indices of those that are complete.
 #[derive(Debug)]
 pub struct Tracker {
-    folder: RunFolder,
-    /// Whether ParaView's index is written.
-    indexed: bool,
+    indices: Vec<Index>,
     pending: VecDeque<CompleteFrame>,
     written: HashSet<PathBuf>,
     seen: usize,
-    /// Times in s and file names.
-    series: Vec<(f64, String)>,
 }
 
 impl Tracker {
-    pub fn new(folder: RunFolder, indexed: bool) -> Self {
-        Self {
-            folder,
-            indexed,
-            pending: VecDeque::new(),
-            written: HashSet::new(),
-            seen: 0,
-            series: Vec::new(),
-        }
-    }
-
-    /// Adds the existing frames up to `last` to the index.
-    pub fn add_existing(&mut self, last: u32, frame_rate: f32) {
-        for frame in 0..=last {
-            let path = self.folder.particles(frame, Format::Vtu.name());
-            if path.exists() {
-                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                self.series.push((f64::from(frame) / f64::from(frame_rate), name));
-            }
-        }
+    /// For a run with these indices, which may already list earlier frames.
+    pub fn new(indices: Vec<Index>) -> Self {
+        Self { indices, pending: VecDeque::new(), written: HashSet::new(), seen: 0 }
     }
 
     /// Adds a frame whose files are queued.
@@ -72,20 +50,7 @@ impl Tracker {
             }
             frames.push(frame);
         }
-        self.extend_index(&frames)?;
+        self.indices.iter_mut().try_for_each(|index| index.extend(&frames))?;
         Ok(frames)
-    }
-
-    /// Rewrites ParaView's index, so that the series can be opened while it grows.
-    fn extend_index(&mut self, frames: &[CompleteFrame]) -> Result<(), IoError> {
-        if frames.is_empty() || !self.indexed {
-            return Ok(());
-        }
-        for frame in frames {
-            let path = self.folder.particles(frame.summary.index, Format::Vtu.name());
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            self.series.push((frame.summary.stats.time, name));
-        }
-        pvd::write_index(&self.folder.index(), &self.series).map(|_| ())
     }
 }

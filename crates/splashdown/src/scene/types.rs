@@ -263,13 +263,15 @@ choices! {
     Format {
         /// Binary PLY: particles and the surface.
         Ply = "ply",
-        /// VTK's XML format for ParaView: particles.
+        /// VTK's XML format for ParaView, as a grid: particles.
         Vtu = "vtu",
+        /// VTK's XML format for ParaView, as poly data: particles and the surface.
+        Vtp = "vtp",
         /// Wavefront OBJ: the surface.
         Obj = "obj",
         /// Legacy VTK: particles and the surface.
         Vtk = "vtk",
-        /// Houdini's geometry format: particles.
+        /// Houdini's geometry format up to version 11: particles.
         Bgeo = "bgeo",
         /// Archive of arrays for numpy: particles.
         Npz = "npz",
@@ -350,6 +352,11 @@ impl Format {
     /// Whether a file of this format can contain the whole scene with all frames.
     pub fn has_scene(self) -> bool {
         matches!(self, Self::Usd | Self::Glb)
+    }
+
+    /// Whether ParaView's index of a series, with the times of the frames, can list files of this format.
+    pub fn has_index(self) -> bool {
+        self.has(splashdown_io::Format::has_index)
     }
 
     /// Whether there is one file per frame. Otherwise one file contains all frames.

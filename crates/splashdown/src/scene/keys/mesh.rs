@@ -7,7 +7,7 @@ use crate::scene::things::UpAxis;
 /// The mesh itself.
 pub(super) const MESH: Key = key(
     "mesh",
-    Kind::Text("a file (.obj, .stl, .ply, .gltf, .glb) beside the scene file, or a model's name"),
+    Kind::Text("a file (.obj, .stl, .ply, .gltf, .glb, .vtk, .vtp) beside the scene file, or a model's name"),
     "Mesh file, or the name of a built-in model, for example lighthouse.",
 )
 .also(&["file", "model", "geometry_file"]);
