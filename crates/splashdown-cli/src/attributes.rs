@@ -19,9 +19,9 @@ pub fn check_format(wanted: &[String], out: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let message = format!(
-        "--attribute: the format of `{}` has no attributes; use {}",
+        "--attribute: the format of `{}` has no attributes; use one of {}",
         out.display(),
-        Format::endings(Format::has_attributes).join(" and ")
+        Format::endings(Format::has_attributes).join(", ")
     );
     Err(Failure::new(Exit::Usage, message))
 }

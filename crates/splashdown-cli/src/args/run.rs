@@ -23,8 +23,7 @@ Examples:
   splashdown run my.toml --json | jq 'select(.event == \"frame\") | .density_error'
 
 Files in the output folder:
-  particles/particles_0000.ply, ...      one file per frame; particles.pvd indexes .vtu files for
-                                         ParaView
+  particles/particles_0000.ply, ...      one file per frame
   mesh/surface_0000.ply, ...             the closed surface of the fluid; its vertices have
                                          velocities in {with_velocities}
   droplets/droplets_0000.ply, ...        isolated particles, which are not part of the surface, with
@@ -33,6 +32,8 @@ Files in the output folder:
                                          camera and materials, with --formats usd,glb; written at
                                          the end, until then in checkpoints/scene.scenepart
   particles.usdc                         all frames of the particles, with --formats usd
+  particles/particles.pvd, mesh/surface.pvd, ...
+                                         the times of the .vtu or .vtp files of a series, for ParaView
   pictures/surface_0000.png, particles_0000.png
   surface.mp4, particles.mp4             if ffmpeg is installed
   checkpoints/checkpoint_0010.splashdown to resume from; written after Ctrl-C and with

@@ -35,7 +35,7 @@ Examples:
   splashdown surface 'frames/ParticleData_*.bgeo' -o meshes/ --particle-spacing 0.05 --smoothing 20
   splashdown surface hot.vtu -o hot.vtk --particle-spacing 0.01 -a temperature -a density
   splashdown surface splash.ply -o splash.obj --particle-spacing 0.02 --min-blob 9 --droplets drops.ply
-  splashdown surface out/my/particles -o 'meshes/water_*.glb' --particle-spacing 0.02";
+  splashdown surface out/my/particles -o 'meshes/water_*.glb'";
 
 /// Options of `surface`.
 #[derive(Debug, Args)]
@@ -47,10 +47,10 @@ pub struct SurfaceArguments {
     /// Output mesh; for several files a folder, or a name in which * becomes the number
     #[arg(short, long, value_name = "MESH")]
     pub out: PathBuf,
-    /// Distance between neighbouring particles in the bulk of the fluid
+    /// Distance between neighbouring particles in the bulk of the fluid [default: that in the file, as in files of runs]
     #[arg(short = 's', long, value_name = "S", allow_negative_numbers = true, value_parser = length)]
     pub particle_spacing: Option<f32>,
-    /// Use the given spacing even if it does not fit the particles
+    /// Use the spacing even if it does not fit the particles
     #[arg(long)]
     pub force: bool,
     /// Kernels of the particles: `anisotropic` gives smoother films and jets, and drops of the right volume

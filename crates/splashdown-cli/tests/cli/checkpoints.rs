@@ -73,8 +73,17 @@ fn await_file(path: &Path) {
 fn a_killed_run_resumes_bit_identically() -> Outcome {
     let place = Place::new()?;
     place.write("more.toml", format!("{SMALL}{MORE}"))?;
-    let run =
-        ["run", "more.toml", "--device", "cpu", "--no-pictures", "--formats", "ply,vtu", "--frames", "40"];
+    let run = [
+        "run",
+        "more.toml",
+        "--device",
+        "cpu",
+        "--no-pictures",
+        "--formats",
+        "ply,vtu,vtp",
+        "--frames",
+        "40",
+    ];
     let output = place.splashdown(&[&run[..], &["--out", "uninterrupted"]].concat()).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
 
@@ -88,6 +97,9 @@ fn a_killed_run_resumes_bit_identically() -> Outcome {
     }
     assert!(child.wait()?.success());
     assert_same(&place.path("out"), &place.path("uninterrupted"))?;
+    for index in ["particles/particles.pvd", "mesh/surface.pvd"] {
+        assert_eq!(fs::read_to_string(place.path("out").join(index))?.matches("<DataSet ").count(), 41);
+    }
 
     // The last two checkpoints remain, and no incomplete file.
     let mut names: Vec<_> = fs::read_dir(place.path("out/checkpoints"))?

@@ -4,7 +4,7 @@ use std::fs;
 
 use crate::place::{Outcome, Place, assert_refused, can_draw, lines, names, stderr, stdout};
 use serde_json::{Value, json};
-use splashdown_io::ply;
+use splashdown_io::{ParticleInfo, ply};
 
 /// Keys that every line has.
 const KEYS: [&str; 11] = [
@@ -76,7 +76,35 @@ fn spray_foam_and_bubbles_have_separate_files() -> Outcome {
         assert_eq!(count(kind, 0)?, 0);
         assert!(count(kind, 5)? > 0, "there are no {kind}");
     }
-    assert_eq!(fs::read_to_string(place.path("out/particles/particles.pvd"))?.matches(".vtu").count(), 6);
+    for kind in ["particles", "spray", "foam", "bubbles"] {
+        let index = fs::read_to_string(place.path(&format!("out/particles/{kind}.pvd")))?;
+        for frame in 0..=5 {
+            let time = format!("timestep=\"{}\"", f64::from(frame) / 10.0);
+            let file = format!("file=\"{kind}_000{frame}.vtu\"");
+            assert!(
+                index.lines().any(|line| line.contains(&time) && line.contains(&file)),
+                "{kind}: {index}"
+            );
+        }
+        assert_eq!(index.matches("<DataSet ").count(), 6, "{kind}: {index}");
+    }
+    // Only the series that exist have an index.
+    assert!(!place.path("out/mesh").exists() && !place.path("out/droplets").exists());
+    // Empty files have them too.
+    for frame in [0, 5] {
+        let file = |ending: &str| place.path(&format!("out/particles/spray_000{frame}.{ending}"));
+        let header = String::from_utf8_lossy(&fs::read(file("ply"))?).into_owned();
+        let time = format!("comment time {}\n", f64::from(frame) / 10.0);
+        assert!(
+            header.contains(&time) && header.contains("comment particle_spacing 0.025\n"),
+            "{header:.200}"
+        );
+        let xml = String::from_utf8_lossy(&fs::read(file("vtu"))?).into_owned();
+        assert!(
+            xml.contains("Name=\"TimeValue\"") && xml.contains("Name=\"particle_spacing\""),
+            "{xml:.400}"
+        );
+    }
     Ok(())
 }
 
@@ -93,7 +121,7 @@ fn isolated_particles_leave_the_surface_and_are_written_as_droplets() -> Outcome
     let run =
         |more: &[&str]| place.splashdown(&[&["run", "drop.toml"], &options[..], more].concat()).output();
     let file = |name: &str| place.path(&format!("out/{name}"));
-    let output = run(&["--formats", "ply,vtk,glb,usd"])?;
+    let output = run(&["--formats", "ply,vtk,vtp,vtu,glb,usd"])?;
     assert!(output.status.success(), "{}", stderr(&output));
     for frame in 0..=2 {
         let name = format!("droplets_000{frame}");
@@ -102,6 +130,8 @@ fn isolated_particles_leave_the_surface_and_are_written_as_droplets() -> Outcome
         let width =
             droplets.attributes.iter().find(|attribute| attribute.name == "width").ok_or("no width")?;
         assert!((width.values[0] / 0.05 - 1.2407).abs() < 1e-3, "{width:?}");
+        let info = droplets.info;
+        assert_eq!((info.time, info.particle_spacing), (Some(f64::from(frame) / 100.0), Some(0.05)));
         assert!(["vtk", "glb"].iter().all(|ending| file(&format!("droplets/{name}.{ending}")).exists()));
         let mesh = ply::read_mesh(&file(&format!("mesh/surface_000{frame}.ply")))?;
         assert_eq!(mesh.topology()?.components, 1);
@@ -111,6 +141,13 @@ fn isolated_particles_leave_the_surface_and_are_written_as_droplets() -> Outcome
         assert_eq!(line["droplets"], 1);
         let droplet = line["volume"].as_f64().ok_or("no volume")? - mesh.volume();
         assert!((droplet / 0.05_f64.powi(3) - 1.0).abs() < 1e-2, "{droplet} m^3");
+    }
+    // Of two formats an index lists the files of the first.
+    for name in ["droplets/droplets", "mesh/surface", "particles/particles"] {
+        let index = fs::read_to_string(file(&format!("{name}.pvd")))?;
+        let stem = name.rsplit('/').next().unwrap_or_default();
+        let last = format!("timestep=\"0.02\" group=\"\" part=\"0\" file=\"{stem}_0002.vtp\"");
+        assert!(index.contains(&last) && index.matches("<DataSet ").count() == 3, "{index}");
     }
     // Foam is written as points, too.
     assert!(file("particles/spray_0002.glb").exists() && file("particles.usdc").exists());
@@ -146,6 +183,7 @@ fn isolated_particles_leave_the_surface_and_are_written_as_droplets() -> Outcome
     assert!(output.status.success(), "{}", stderr(&output));
     let mesh = ply::read_mesh(&file("mesh/surface_0000.ply"))?;
     assert_eq!(mesh.topology()?.components, 2);
+    assert!(!file("mesh/surface.pvd").exists() && !file("particles/foam.pvd").exists());
     assert!(!file("droplets/droplets_0000.glb").exists() && !file("scene.usdc").exists());
 
     for (command, limit) in [("run", "33"), ("render", "-1")] {
@@ -409,23 +447,27 @@ fn glb_document(path: &Path) -> Result<Value, Box<dyn std::error::Error>> {
 #[test]
 fn every_format_contains_the_same_frames() -> Outcome {
     let place = Place::new()?;
-    let formats = "ply,vtu,obj,vtk,bgeo,npz,stl,glb,usd";
+    let formats = "ply,vtu,vtp,obj,vtk,bgeo,npz,stl,glb,usd";
     let output = place.run_small(&["--formats", formats]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     for frame in 0..=2 {
         let file = |name: &str| place.path(&format!("out/{name}").replace('#', &format!("000{frame}")));
         let particles = ply::read_particles(&file("particles/particles_#.ply"))?;
-        for ending in ["vtu", "vtk", "bgeo", "npz"] {
-            let other = splashdown_io::read_particles(&file(&format!("particles/particles_#.{ending}")))?;
+        assert_eq!(particles.info, ParticleInfo::new(f64::from(frame) / 200.0, 0.05));
+        for ending in ["vtu", "vtp", "vtk", "bgeo", "npz"] {
+            let mut other = splashdown_io::read_particles(&file(&format!("particles/particles_#.{ending}")))?;
+            // BGEO has only single precision.
+            let time = other.info.time.map(|time| time as f32);
+            assert_eq!(time, particles.info.time.map(|time| time as f32), "{ending}");
+            other.info.time = particles.info.time;
             assert_eq!(other, particles, "{ending}");
         }
         let mesh = ply::read_mesh(&file("mesh/surface_#.ply"))?;
-        for ending in ["obj", "stl", "glb"] {
+        for ending in ["obj", "stl", "glb", "vtk", "vtp"] {
             let other = splashdown_io::read_mesh(&file(&format!("mesh/surface_#.{ending}")))?;
             assert_eq!(other.len(), mesh.len(), "{ending}");
             assert!((other.volume() / mesh.volume() - 1.0).abs() < 1e-5, "{ending}");
         }
-        assert!(fs::metadata(file("mesh/surface_#.vtk"))?.len() > 1000);
         // The vertices fall at about the same speed as the particles.
         let mean = |values: &[[f32; 3]]| values.iter().map(|v| v[1]).sum::<f32>() / values.len() as f32;
         let (fluid, surface) = (mean(&particles.velocities), mean(&mesh.velocities));
@@ -434,6 +476,15 @@ fn every_format_contains_the_same_frames() -> Outcome {
             "frame {frame}: {fluid} and {surface} m/s"
         );
         assert_eq!(frame > 0, surface < -0.01, "frame {frame}: {surface} m/s");
+    }
+    // `surface` needs no spacing for these files.
+    for ending in ["ply", "vtu", "vtp", "vtk", "bgeo", "npz"] {
+        let (given, out) = (format!("out/particles/particles_*.{ending}"), format!("m/{ending}_*.ply"));
+        let output = place.splashdown(&["surface", &given, "-o", &out, "-d", "cpu", "--json"]).output()?;
+        assert!(output.status.success(), "{ending}: {}", stderr(&output));
+        let spacings: Vec<_> = lines(&output)?.iter().map(|line| line["particle_spacing"].as_f64()).collect();
+        assert_eq!(spacings, [Some(0.05); 3], "{ending}");
+        assert!(ply::read_mesh(&place.path(&format!("m/{ending}_0002.ply")))?.topology()?.is_watertight());
     }
     for name in ["scene.usdc", "particles.usdc"] {
         assert!(fs::read(place.path(&format!("out/{name}")))?.starts_with(b"PXR-USDC"), "{name}");

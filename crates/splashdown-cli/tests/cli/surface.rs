@@ -3,9 +3,11 @@
 use std::fs;
 
 use serde_json::Value;
-use splashdown_io::{Mesh, Particles, ply, read_mesh, read_particles_with_attributes, write_particles};
+use splashdown_io::{
+    Mesh, ParticleInfo, Particles, ply, read_mesh, read_particles_with_attributes, write_particles,
+};
 
-use crate::place::{Outcome, Place, assert_refused, stderr, stdout};
+use crate::place::{Outcome, Place, assert_refused, lines, stderr, stdout};
 
 const SPACING: f32 = 0.02;
 
@@ -189,6 +191,86 @@ fn a_series_of_particle_files_gives_a_series_of_meshes() -> Outcome {
     Ok(())
 }
 
+/// The spacing in the line of each mesh.
+fn spacings(output: &std::process::Output) -> Result<Vec<Option<f64>>, Box<dyn std::error::Error>> {
+    Ok(lines(output)?.iter().map(|line| line["particle_spacing"].as_f64()).collect())
+}
+
+#[test]
+fn the_particle_spacing_is_that_of_the_file() -> Outcome {
+    let place = Place::new()?;
+    let info = |spacing: f32| ParticleInfo::new(0.25, spacing);
+    let surface = |input: &str, out: &str, more: &[&str]| {
+        place.splashdown(&[&["surface", input, "-o", out, "-d", "cpu", "--json"], more].concat()).output()
+    };
+    for ending in ["ply", "vtk", "vtu", "vtp", "bgeo", "npz"] {
+        let name = format!("block.{ending}");
+        write_particles(&place.path(&name), &block([0.0; 3]).with_info(info(SPACING)))?;
+        let contained = surface(&name, "a.ply", &[])?;
+        assert!(contained.status.success(), "{ending}: {}", stderr(&contained));
+        assert_eq!(spacings(&contained)?, [Some(0.02)], "{ending}");
+        assert!(surface(&name, "b.ply", &["-s", "0.02"])?.status.success(), "{ending}");
+        let mesh = |name: &str| read_mesh(&place.path(name));
+        assert_eq!(mesh("a.ply")?, mesh("b.ply")?, "{ending}");
+        // The option takes precedence.
+        let given = surface(&name, "c.ply", &["-s", "0.025"])?;
+        assert_eq!(spacings(&given)?, [Some(0.025)], "{ending}");
+        assert_ne!(mesh("a.ply")?, mesh("c.ply")?, "{ending}");
+        // Negative control: the same file without it.
+        write_particles(&place.path(&name), &block([0.0; 3]))?;
+        let missing = surface(&name, "d.ply", &[])?;
+        assert_refused(&missing, 2, &["--particle-spacing is missing", &name, "0.0200"]);
+    }
+
+    // Each file of a series has its own; a file without it is reported, and the others are meshed.
+    let mut twice = block([0.0; 3]).with_info(info(2.0 * SPACING));
+    twice.positions.iter_mut().flatten().for_each(|x| *x *= 2.0);
+    write_particles(&place.path("s_0001.npz"), &block([0.0; 3]).with_info(info(SPACING)))?;
+    write_particles(&place.path("s_0002.npz"), &twice)?;
+    let series = surface("s_*.npz", "made/w_*.vtp", &[])?;
+    assert!(series.status.success(), "{}", stderr(&series));
+    assert_eq!(spacings(&series)?, [Some(0.02), Some(0.04)]);
+    let volume = |number: u32| read_mesh(&place.path(&format!("made/w_000{number}.vtp")));
+    assert!((volume(2)?.volume() / volume(1)?.volume() - 8.0).abs() < 1e-3);
+    write_particles(&place.path("s_0003.npz"), &block([0.0; 3]))?;
+    let series = surface("s_*.npz", "made/w_*.vtp", &[])?;
+    assert_eq!((series.status.code(), spacings(&series)?.len()), (Some(1), 2));
+    assert!(stderr(&series).contains("s_0003.npz"), "{}", stderr(&series));
+    Ok(())
+}
+
+#[test]
+fn a_spacing_in_a_file_that_does_not_fit_is_refused() -> Outcome {
+    let place = Place::new()?;
+    let header = |spacing: &str| {
+        let positions = block([0.0; 3]).positions;
+        let rows: String = positions.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect();
+        format!(
+            "ply\nformat ascii 1.0\ncomment particle_spacing {spacing}\nelement vertex {}\nproperty float x\n\
+             property float y\nproperty float z\nend_header\n{rows}",
+            positions.len()
+        )
+    };
+    let surface = |more: &[&str]| {
+        place.splashdown(&[&["surface", "a.ply", "-o", "m.ply", "-d", "cpu"], more].concat()).output()
+    };
+    for wrong in ["20", "1e-6", "1e11"] {
+        place.write("a.ply", header(wrong))?;
+        assert_refused(&surface(&[])?, 2, &["a.ply", "contains a particle spacing", "0.0200", "--force"]);
+        assert!(!place.path("m.ply").exists(), "{wrong}");
+    }
+    for ignored in ["nan", "-0.02", "0", "inf", "1e300", "1e-300", "wide"] {
+        place.write("a.ply", header(ignored))?;
+        assert_refused(&surface(&[])?, 2, &["--particle-spacing is missing", "0.0200"]);
+    }
+    // An option replaces a wrong spacing, and drops that are far from each other are accepted.
+    place.write("a.ply", header("20"))?;
+    assert!(surface(&["-s", "0.02"])?.status.success());
+    place.write("a.ply", header("0.004"))?;
+    assert!(surface(&[])?.status.success());
+    Ok(())
+}
+
 #[test]
 fn errors_are_reported_before_anything_is_written() -> Outcome {
     let place = Place::new()?;
@@ -234,7 +316,7 @@ fn errors_are_reported_before_anything_is_written() -> Outcome {
         ("block.ply", "m.ply", &["-s", "0.02", "--droplets", "d.obj"], 2, &["d.obj", ".ply", ".glb"]),
         ("block.ply", "m.ply", &["-s", "0.02", "--droplets", "m.ply"], 2, &["m.ply", "--droplets"]),
         ("block.ply", "m*/x.ply", &spacing, 2, &["m*/x.ply", "star"]),
-        ("block.ply", "m.obj", &["-s", "0.02", "-a", "all"], 2, &["m.obj", ".ply and .vtk"]),
+        ("block.ply", "m.obj", &["-s", "0.02", "-a", "all"], 2, &["m.obj", ".ply, .vtk, .vtp"]),
         ("block.ply", "m.ply", &["-s", "0.02", "-a", "heat"], 2, &["`heat`", "it has velocity"]),
     ];
     for (input, out, options, code, words) in cases {

@@ -1,10 +1,11 @@
 //! `splashdown surface`: closed surface meshes from particle files.
 
+mod spacing;
+
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
-use splashdown::sample::typical_spacing;
 use splashdown::surface::{
     SurfaceError, SurfaceParams, droplets_of, interpolate, isolated, reconstruct_with,
 };
@@ -19,16 +20,14 @@ use crate::args::{SurfaceArguments, is_mesh_file};
 use crate::exit::{Exit, Failure};
 use crate::{attributes, console, human, memory};
 
-/// The largest accepted ratio between the given spacing and the one estimated from the particles. A larger ratio is
-/// a mistake: a radius instead of a diameter, or another unit.
-const MAX_SPACING_RATIO: f32 = 1.8;
-
 /// One mesh, as `--json` prints it.
 #[derive(Debug, Serialize)]
 struct Line<'a> {
     input: &'a Path,
     output: &'a Path,
     particles: usize,
+    /// In the unit of the files.
+    particle_spacing: f32,
     vertices: usize,
     triangles: usize,
     pieces: usize,
@@ -68,14 +67,7 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
         mesh_format(output, &arguments.out)?;
         attributes::check_format(&arguments.attribute, output)?;
     }
-    let spacing = spacing(arguments, &steps)?;
-    let mut params = SurfaceParams::new(spacing);
-    params.support_radius = arguments.support_radius.unwrap_or(params.support_radius);
-    params.cell_size = arguments.cell_size.unwrap_or(params.cell_size);
-    params.kernels = arguments.kernels;
-    params.iso_level = arguments.iso_level;
-    params.smoothing_iterations = arguments.smoothing;
-    params.check().map_err(|error| Failure::new(Exit::Usage, error.to_string()))?;
+    parameters(arguments, spacing::first(arguments, &steps[0].input)?)?;
     for output in [Some(&steps[0].output), droplet_files.first()].into_iter().flatten() {
         if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             prepare_folder(folder)?;
@@ -86,7 +78,7 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     for (number, step) in steps.iter().enumerate() {
         let place = Place { number: number + 1, all: steps.len(), start_memory };
         let droplet_file = droplet_files.get(number).map(PathBuf::as_path);
-        let topology = match one((step, droplet_file), &params, arguments, &mut executor, place) {
+        let topology = match one((step, droplet_file), arguments, &mut executor, place) {
             // The remaining files of a series are still processed.
             Err(failure) if steps.len() > 1 && matches!(failure.exit, Exit::Usage | Exit::Scene) => {
                 failures.push(failure.message);
@@ -102,10 +94,24 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     conclude(arguments, &steps, last, &failures)
 }
 
+/// The parameters for particles of this spacing.
+///
+/// # Errors
+/// [`Exit::Usage`] for a parameter that is out of range.
+fn parameters(arguments: &SurfaceArguments, particle_spacing: f32) -> Result<SurfaceParams, Failure> {
+    let mut params = SurfaceParams::new(particle_spacing);
+    params.support_radius = arguments.support_radius.unwrap_or(params.support_radius);
+    params.cell_size = arguments.cell_size.unwrap_or(params.cell_size);
+    params.kernels = arguments.kernels;
+    params.iso_level = arguments.iso_level;
+    params.smoothing_iterations = arguments.smoothing;
+    params.check().map_err(|error| Failure::new(Exit::Usage, error.to_string()))?;
+    Ok(params)
+}
+
 /// Reads one file and writes its mesh; returns the mesh's topology.
 fn one(
     (step, droplet_file): (&Step, Option<&Path>),
-    params: &SurfaceParams,
     arguments: &SurfaceArguments,
     executor: &mut Executor,
     Place { number, all, start_memory }: Place,
@@ -113,6 +119,7 @@ fn one(
     let begun = Instant::now();
     let Step { input, output } = step;
     let particles = read(input, arguments)?;
+    let params = &parameters(arguments, spacing::of(arguments, &particles, input)?)?;
     let selected = attributes::selected(&particles, &arguments.attribute, input)?;
     let read = Instant::now();
     let (mut surface, droplets) = separated(&particles.positions, params, arguments, executor)
@@ -132,6 +139,7 @@ fn one(
         input,
         output,
         particles: particles.len(),
+        particle_spacing: params.particle_spacing,
         vertices: surface.vertices.len(),
         triangles: surface.len(),
         pieces: topology.components,
@@ -282,55 +290,6 @@ fn input_failure(error: SurfaceError, input: &Path) -> Failure {
         _ => return error.into(),
     };
     Failure::new(exit, format!("`{}`: {error}", input.display()))
-}
-
-/// The given spacing, if it fits the particles of the first file.
-///
-/// # Errors
-/// [`Exit::Usage`] if it does not fit, or if none is given.
-fn spacing(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure> {
-    let first = &steps[0].input;
-    let given = arguments.particle_spacing;
-    if let (Some(given), true) = (given, arguments.force) {
-        return Ok(given);
-    }
-    let particles = read(first, arguments)?;
-    let found = typical_spacing(&particles.positions).filter(|&found| found > 0.0);
-    let name = first.display();
-    match (given, found) {
-        (Some(given), None) => Ok(given),
-        (Some(given), Some(found))
-            if (found / MAX_SPACING_RATIO..=found * MAX_SPACING_RATIO).contains(&given) =>
-        {
-            Ok(given)
-        }
-        (Some(given), Some(found)) => {
-            let hint =
-                if (given * 2.0 / found - 1.0).abs() < 0.15 { " (is it the particle radius?)" } else { "" };
-            let digits = human::three_digits(f64::from(found));
-            Err(Failure::new(
-                Exit::Usage,
-                format!(
-                    "a particle spacing of {given} does not fit the particles of `{name}`{hint}: their distance is about \
-                     {digits}. Give --particle-spacing {digits}, or --force to use {given}"
-                ),
-            ))
-        }
-        (None, Some(found)) => {
-            let digits = human::three_digits(f64::from(found));
-            Err(Failure::new(
-                Exit::Usage,
-                format!(
-                    "--particle-spacing is missing: give the initial distance of the particles. In `{name}` their distance is \
-                     about {digits}"
-                ),
-            ))
-        }
-        (None, None) => Err(Failure::new(
-            Exit::Usage,
-            format!("--particle-spacing is missing, and `{name}` has too few particles to estimate it"),
-        )),
-    }
 }
 
 /// Checks that the name of a mesh has a known format before anything is computed.
