@@ -37,20 +37,24 @@ impl Particles {
 #[pymethods]
 impl Particles {
     #[new]
-    #[pyo3(signature = (positions, *, velocities = None, densities = None, pressures = None, ids = None))]
+    #[pyo3(signature = (positions, *, velocities = None, densities = None, pressures = None, ids = None, time = None, particle_spacing = None))]
     fn new(
         positions: &Bound<'_, PyAny>,
         velocities: Option<&Bound<'_, PyAny>>,
         densities: Option<&Bound<'_, PyAny>>,
         pressures: Option<&Bound<'_, PyAny>>,
         ids: Option<&Bound<'_, PyAny>>,
+        time: Option<f64>,
+        particle_spacing: Option<f32>,
     ) -> Result<Self> {
         let mut inputs = Inputs::default();
-        let particles = splashdown::Particles::from_positions(inputs.vectors("positions", Some(positions))?)
-            .with_velocities(inputs.vectors("velocities", velocities)?)
-            .with_densities(inputs.scalars("densities", densities)?)
-            .with_pressures(inputs.scalars("pressures", pressures)?)
-            .with_ids(inputs.integers("ids", ids, None)?);
+        let mut particles =
+            splashdown::Particles::from_positions(inputs.vectors("positions", Some(positions))?)
+                .with_velocities(inputs.vectors("velocities", velocities)?)
+                .with_densities(inputs.scalars("densities", densities)?)
+                .with_pressures(inputs.scalars("pressures", pressures)?)
+                .with_ids(inputs.integers("ids", ids, None)?);
+        (particles.info.time, particles.info.particle_spacing) = (time, particle_spacing);
         particles.check().map_err(|error| ArrayError::new_err(error.to_string()))?;
         Ok(Self(Arc::new(particles)))
     }
@@ -100,6 +104,25 @@ impl Particles {
     #[getter]
     fn ids<'py>(this: &Bound<'py, Self>) -> Result<Bound<'py, PyArray1<u32>>> {
         scalars_of(this, |particles| &particles.0.ids)
+    }
+
+    /// Simulated time in s; `None` if it is not known. Files of particles contain it.
+    ///
+    /// >>> frame.particles.time == frame.time
+    /// True
+    #[getter]
+    fn time(&self) -> Option<f64> {
+        self.0.info.time
+    }
+
+    /// Particle spacing in m; `None` if it is not known. Files of particles contain it.
+    ///
+    /// >>> size = splashdown.write_particles(folder / "state.npz", frame.particles)
+    /// >>> splashdown.read_particles(folder / "state.npz").particle_spacing == frame.particles.particle_spacing
+    /// True
+    #[getter]
+    fn particle_spacing(&self) -> Option<f32> {
+        self.0.info.particle_spacing
     }
 
     /// All attributes of the file that the particles were read from, by name: (N,) or (N, 3) float32.

@@ -16,16 +16,22 @@ from splashdown import FileError, Particles
 def test_every_particle_format(tmp_path: Path, cloud: numpy.ndarray) -> None:
     read, written = splashdown.particle_formats()
     velocities = cloud[::-1].copy()
-    particles = Particles(cloud, velocities=velocities, ids=numpy.arange(len(cloud)))
+    ids = numpy.arange(len(cloud))
+    particles = Particles(cloud, velocities=velocities, ids=ids, time=0.5, particle_spacing=0.02)
     both = sorted(set(read) & set(written))
-    assert {".ply", ".vtk", ".vtu", ".bgeo", ".npz"} <= set(both)
+    assert {".ply", ".vtk", ".vtu", ".vtp", ".bgeo", ".npz"} <= set(both)
     for ending in both:
         path = tmp_path / f"points{ending}"
         assert splashdown.write_particles(path, particles) == path.stat().st_size
         again = splashdown.read_particles(path)
         assert numpy.array_equal(again.positions, cloud), ending
         assert numpy.array_equal(again.velocities, velocities), ending
-        assert (again.ids == numpy.arange(len(cloud))).all(), ending
+        assert (again.ids == ids).all(), ending
+        assert (again.time, again.particle_spacing) == (0.5, particles.particle_spacing), ending
+        # Control: particles without them.
+        splashdown.write_particles(path, Particles(cloud))
+        again = splashdown.read_particles(path)
+        assert (again.time, again.particle_spacing) == (None, None), ending
 
 
 def test_files_without_particles(tmp_path: Path) -> None:

@@ -154,13 +154,20 @@ def test_workers_with_another_version_or_without_the_files(tmp_path: Path) -> No
 
 def test_the_frames_of_a_run(tmp_path: Path) -> None:
     splashdown.run(column(), tmp_path / "out", frames=3, formats=["npz"], pictures=[], surface=False, device="cpu")
-    job = splashdown.ReconstructSurface(tmp_path / "mesh", 0.1, smoothing=5, device="cpu")
+    # The files contain the particle spacing.
+    job = splashdown.ReconstructSurface(tmp_path / "mesh", smoothing=5, device="cpu")
     table = splashdown.map_frames(tmp_path / "out/particles/*.npz", job, workers=2)
     assert list(table["status"]) == ["finished"] * 4
     assert all(splashdown.read_mesh(path).is_watertight for path in table["mesh"])
     (tmp_path / "broken.npz").write_bytes(b"nothing")
     table = splashdown.map_frames([tmp_path / "broken.npz"], job, workers=1)
     assert table["status"][0] == "failed" and "broken.npz" in table["reason"][0]
+    last = splashdown.read_particles(tmp_path / "out/particles/particles_0003.npz")
+    splashdown.write_particles(tmp_path / "bare.npz", splashdown.Particles(last.positions))
+    table = splashdown.map_frames([tmp_path / "bare.npz"], job, workers=1)
+    assert table["status"][0] == "failed" and "give particle_spacing" in table["reason"][0]
+    given = job._replace(particle_spacing=0.1)
+    assert splashdown.map_frames([tmp_path / "bare.npz"], given, workers=1)["status"][0] == "finished"
     with pytest.raises(ParameterError, match="no file matches"):
         splashdown.map_frames(tmp_path / "*.none", job)
 

@@ -184,8 +184,8 @@ def map_frames(
 class ReconstructSurface(NamedTuple):
     """Reconstructs the surface of a file of particles and writes the mesh into a folder: a function for `map_frames`.
 
-    `particle_spacing` and `cell_size` are in m. `format` is the ending of the meshes. `kernels` is "isotropic" or
-    "anisotropic" as in `surface`.
+    `particle_spacing` and `cell_size` are in m. Files of runs contain their spacing, which is used if none is given.
+    `format` is the ending of the meshes. `kernels` is "isotropic" or "anisotropic" as in `surface`.
 
     >>> import splashdown
     >>> job = splashdown.ReconstructSurface(
@@ -202,7 +202,7 @@ class ReconstructSurface(NamedTuple):
     """
 
     folder: PathLike
-    particle_spacing: float
+    particle_spacing: float | None = None
     cell_size: float | None = None
     smoothing: int = 0
     format: str = "ply"
@@ -212,9 +212,12 @@ class ReconstructSurface(NamedTuple):
     def __call__(self, path: Path) -> dict[str, Any]:
         """Reconstructs one file; returns the file of the mesh and its numbers of vertices and triangles."""
         particles = read_particles(path)
+        spacing = particles.particle_spacing if self.particle_spacing is None else self.particle_spacing
+        if spacing is None:
+            raise ParameterError(f"{path.name!r} does not contain its particle spacing: give particle_spacing")
         mesh = surface(
             particles.positions,
-            self.particle_spacing,
+            spacing,
             cell_size=self.cell_size,
             smoothing=self.smoothing,
             kernels=self.kernels,
