@@ -10,7 +10,9 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use splashdown::scene::{Scene, presets};
 use splashdown::{Device, Event, Run, RunOptions};
-use splashdown_io::{Attribute, Mesh, Particles, Picture, picture, write_mesh, write_particles};
+use splashdown_io::{
+    Attribute, Mesh, ParticleInfo, Particles, Picture, picture, write_mesh, write_particles,
+};
 
 /// A scene of a few particles.
 pub const SMALL: &str = "\
@@ -42,6 +44,7 @@ fn particles() -> Particles {
     particles.densities = vec![1000.0; count];
     particles.pressures = (0..count).map(value).collect();
     particles.ids = (0..count as u32).collect();
+    particles.info = ParticleInfo::new(0.5, 0.5);
     particles.attributes.push(Attribute {
         name: "temperature".to_owned(),
         components: 1,

@@ -52,6 +52,7 @@ pub fn targets() -> Vec<Target> {
             || Ok(vec![seeds::particle_file(".vtu")?, seeds::vtu_text()]),
             |bytes, at| particles(bytes, at, ".vtu"),
         ),
+        of("vtp", || Ok(vec![seeds::particle_file(".vtp")?]), |bytes, at| particles(bytes, at, ".vtp")),
         of("bgeo", || Ok(vec![seeds::particle_file(".bgeo")?]), |bytes, at| particles(bytes, at, ".bgeo")),
         of(
             "bgeo-gz",
@@ -67,6 +68,8 @@ pub fn targets() -> Vec<Target> {
             |bytes, at| particles(bytes, at, ".xyz"),
         ),
         of("ply-mesh", || Ok(vec![seeds::mesh_file(".ply")?]), |bytes, at| mesh(bytes, at, ".ply")),
+        of("vtk-mesh", || Ok(vec![seeds::mesh_file(".vtk")?]), |bytes, at| mesh(bytes, at, ".vtk")),
+        of("vtp-mesh", || Ok(vec![seeds::mesh_file(".vtp")?]), |bytes, at| mesh(bytes, at, ".vtp")),
         of("obj", || Ok(vec![seeds::mesh_file(".obj")?]), |bytes, at| mesh(bytes, at, ".obj")),
         of(
             "stl",
