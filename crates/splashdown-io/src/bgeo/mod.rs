@@ -2,7 +2,8 @@
 //! and a writer.
 //!
 //! The format is big-endian: counts, descriptions of the attributes, then one row per point with x y z w and the
-//! attributes. The whole file may be compressed by gzip; SPlisHSPlasH does so without `.gz` in the name.
+//! attributes. Attributes of the whole (`time`, `particle_spacing`) follow, which are read from files without primitives.
+//! The whole file may be compressed by gzip; SPlisHSPlasH does so without `.gz` in the name.
 //!
 //! *Why own code:* the only crate that reads it is `splashsurf_lib`, a complete surface reconstruction. The tests read a
 //! file that it has written.
