@@ -17,8 +17,8 @@ fn after_help() -> String {
 Input formats:   {}
 Output formats:  {}
 Velocities of particles are interpolated to the vertices ({}). Other attributes
-(a number or a vector per particle) are interpolated with --attribute ({}). With several
-input files, each mesh has the number of its input file, in place of * or before the ending.
+(a number or a vector per particle) are interpolated with --attribute ({}). With
+several input files, each mesh has the number of its input file, in place of * or before the ending.
 
 Lengths are in the unit of the files. With equal parameters the surface is that of splashsurf, whose
 particle radius is half of the particle spacing.",

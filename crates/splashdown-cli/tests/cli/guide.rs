@@ -137,7 +137,7 @@ fn formats_equal_those_of_the_help() -> Outcome {
         );
         count += 1;
     }
-    assert_eq!(count, 10, "nine formats and `none`");
+    assert_eq!(count, 11, "ten formats and `none`");
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! Complete runs of a small scene: files, console output and JSON lines.
 
 use std::fs;
+use std::path::Path;
 
 use crate::place::{Outcome, Place, assert_refused, can_draw, lines, names, stderr, stdout};
 use serde_json::{Value, json};

@@ -147,7 +147,13 @@ mod tests {
         assert!(frame.exists());
         fs::write(folder.report(), "{}")?;
         assert_eq!(folder.remove_earlier(), 5);
-        assert!(!frame.exists() && !index.exists() && mine.exists() && other.exists() && !folder.probe("gauge").exists());
+        assert!(
+            !frame.exists()
+                && !index.exists()
+                && mine.exists()
+                && other.exists()
+                && !folder.probe("gauge").exists()
+        );
         assert!(!folder.body("crate").exists() && !folder.body_mesh("crate").exists());
         // Without a table, the mesh is a file of the user.
         assert!(folder.body_mesh("boat").exists());

@@ -268,7 +268,9 @@ impl Run {
 
     fn fetch(&mut self, index: u32) -> Result<Frame, SimulationError> {
         let begun = Instant::now();
-        let (mut mesh, droplets) = match &mut self.surface {
+        // A sum of frame durations in single precision would give 0.0199999996.
+        let time = f64::from(index) / f64::from(self.frame_rate);
+        let (mut mesh, mut droplets) = match &mut self.surface {
             Some(surface) => {
                 self.simulation.extract(surface)?;
                 let separates = surface.params().separates();
@@ -284,7 +286,11 @@ impl Run {
             }
             None => None,
         };
-        let particles = Arc::new(self.simulation.particles()?);
+        let mut particles = self.simulation.particles()?;
+        for points in [Some(&mut particles), droplets.as_mut()].into_iter().flatten() {
+            points.info.time = Some(time);
+        }
+        let particles = Arc::new(particles);
         if let (Some(mesh), Some(surface), true) = (&mut mesh, &self.surface, self.vertex_velocities) {
             let (positions, velocities) = (&particles.positions, &particles.velocities);
             mesh.velocities = interpolate(&mesh.vertices, positions, velocities, surface.params())?;
@@ -299,8 +305,6 @@ impl Run {
         self.stage = self.after(index);
         self.complete = Some(index);
         self.clock.frames += begun.elapsed();
-        // A sum of frame durations in single precision would give 0.0199999996.
-        let time = f64::from(index) / f64::from(self.frame_rate);
         let warnings = self.simulation.take_warnings().into_iter();
         self.pending_events.extend(warnings.map(|text| Event::Warning(format!("at {time:.4} s: {text}"))));
         let inside_bodies = self.simulation.inside_bodies(&particles)?;

@@ -279,7 +279,7 @@ choices! {
         Stl = "stl",
         /// Binary glTF for the web and game engines: the surface, and the whole scene with all frames in one file.
         Glb = "glb",
-        /// Binary USD: the whole scene with all frames in one file, and the particles in another.
+        /// Binary USD: the surface and the rest of the scene with all frames in one file, and the particles in another.
         Usd = "usd",
     }
     /// What a run does when the fluid bursts: when the monitor finds values that are meaningless.
