@@ -26,15 +26,13 @@ pub fn empty_frame(scene: &Scene, camera: Camera) -> Frame<'static> {
 
 /// The scene's camera at a simulated time in s.
 pub fn camera(scene: &Scene, time: f64) -> Camera {
-    let camera = &scene.camera;
-    let azimuth = f64::from(camera.azimuth) + f64::from(camera.orbit_speed) * time;
-    Camera::orbit(
-        camera.target.into(),
-        camera.distance,
-        azimuth as f32,
-        camera.elevation,
-        camera.field_of_view,
-    )
+    placed_camera(&scene.camera_at(time))
+}
+
+/// The camera of the renderer at the place of that of a scene.
+pub(crate) fn placed_camera(camera: &splashdown::scene::Camera) -> Camera {
+    let target = camera.target.into();
+    Camera::orbit(target, camera.distance, camera.azimuth, camera.elevation, camera.field_of_view)
 }
 
 /// The scene's domain.

@@ -29,7 +29,9 @@
 //! ```
 
 mod builder;
+mod camera_path;
 mod choice;
+mod curve;
 mod derived;
 mod errors;
 mod formula;
@@ -63,7 +65,9 @@ pub(crate) use spec::{place, rounded};
 pub(crate) use suggest::closest;
 
 pub use builder::{SceneBuilder, SceneValue, SectionBuilder};
+pub use camera_path::{CameraKeyframe, CameraPath};
 pub use choice::Choice;
+pub use curve::hermite_weights;
 pub use derived::{Derived, lattice_sum};
 pub use errors::{SceneErrors, SceneProblem, SceneWarning};
 pub use formula::Formula;

@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec3, EulerRot, Quat, Vec3};
 
+use super::curve::hermite_weights;
 use super::formula::Formula;
 
 /// A body's pose and velocities.
@@ -104,11 +105,11 @@ impl Script {
             let (p, q) = (&keys[k - 1], &keys[k + 1]);
             (q.position - p.position).as_dvec3() / (q.time - p.time)
         };
-        let (f2, f3) = (f * f, f * f * f);
-        let position = (2.0 * f3 - 3.0 * f2 + 1.0) * a.position.as_dvec3()
-            + (f3 - 2.0 * f2 + f) * length * slope(next - 1)
-            + (3.0 * f2 - 2.0 * f3) * b.position.as_dvec3()
-            + (f3 - f2) * length * slope(next);
+        let [start, leave, end, arrive] = hermite_weights(f);
+        let position = start * a.position.as_dvec3()
+            + leave * length * slope(next - 1)
+            + end * b.position.as_dvec3()
+            + arrive * length * slope(next);
         (position, a.orientation.as_dquat().slerp(b.orientation.as_dquat(), f))
     }
 }

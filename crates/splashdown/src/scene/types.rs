@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
+use super::camera_path::CameraPath;
 use super::choice::{Choice, choices};
 use super::errors::SceneWarning;
 use super::picture::PictureSettings;
@@ -47,6 +48,8 @@ pub struct Scene {
     pub foam: FoamSettings,
     /// The view of the pictures.
     pub camera: Camera,
+    /// The motion of the camera during the run; see [`Scene::camera_at`].
+    pub camera_path: CameraPath,
     /// The appearance of the pictures.
     pub picture: PictureSettings,
     /// The output files.

@@ -1,8 +1,9 @@
-//! The TOML examples of the user guide are valid scenes, or valid parts of one.
+//! The TOML examples of the user guide are valid scenes, valid parts of one, or camera paths.
 
 use std::fs;
 use std::path::Path;
 
+use splashdown::scene::CameraPath;
 use toml::{Table, Value};
 
 use crate::{CUBE, parse};
@@ -60,6 +61,12 @@ fn every_scene_of_the_guide_is_valid() {
         }
         for (line, block) in blocks(&fs::read_to_string(&path).expect("a page")) {
             if block.starts_with("[dependencies]") {
+                continue;
+            }
+            if block.contains("\n[[keyframe]]\n") {
+                let camera = &parse(CUBE).expect("the cube is valid").camera;
+                let read = CameraPath::parse(&block, "a camera path", camera);
+                read.unwrap_or_else(|errors| panic!("{}:{line}: {errors}", path.display()));
                 continue;
             }
             let scene = parse(&completed(&block))

@@ -1,6 +1,7 @@
 //! Scene files: accepted and rejected input, error messages, and sampling of blocks.
 
 mod bodies;
+mod camera;
 mod derived;
 mod errors;
 mod files;

@@ -17,6 +17,7 @@ pub(crate) use words::{MotionWord, OutletWord, QuantityWord, ShapeWord, SinkWord
 use fluid::FLUID;
 use numerics::{FOAM, SOLVER, SURFACE};
 use picture::PICTURE;
+pub(super) use show::CAMERA_PATH;
 use show::{CAMERA, OUTPUT};
 use things::{BODY, EMITTER, PROBE, SINK};
 

@@ -4,6 +4,9 @@ use super::FAR;
 use crate::scene::spec::{Kind, Table, a_number, a_vector, key, range, words};
 use crate::scene::types::{ColourBy, Format, PictureKind, PictureQuality};
 
+/// Maximum number of keyframes of a camera.
+const MAX_KEYFRAMES: usize = 1000;
+
 pub(super) static CAMERA: Table = Table {
     about: "View of the pictures.",
     keys: &[
@@ -29,6 +32,35 @@ pub(super) static CAMERA: Table = Table {
             .also(&["fov"]),
         key("orbit_speed", a_number(-3600.0, 3600.0, "degrees/s"), "Rate of change of the azimuth.")
             .default("0.0"),
+        key("keyframe", Kind::Tables(&KEYFRAME, MAX_KEYFRAMES), "Places of the camera at given times.")
+            .also(&["keyframes", "path"]),
+    ],
+};
+
+/// A file with a camera path.
+pub(in crate::scene) static CAMERA_PATH: Table = Table {
+    about: "The path of a camera.",
+    keys: &[key("keyframe", Kind::Tables(&KEYFRAME, MAX_KEYFRAMES), "Places of the camera at given times.")
+        .also(&["keyframes", "path"])],
+};
+
+static KEYFRAME: Table = Table {
+    about: "The place of the camera at a given time. The camera moves smoothly between keyframes and rests before the first \
+            and after the last. Keys that are not given are those of [camera].",
+    keys: &[
+        key("time", a_number(0.0, 3600.0, "s"), "Simulated time.").required().also(&["t"]),
+        key("target", a_vector(FAR, "m"), "Point at the centre of the picture.").also(&["look_at", "center"]),
+        key("eye", a_vector(FAR, "m"), "Place of the camera, instead of distance, azimuth and elevation.")
+            .also(&["position"]),
+        key("distance", a_number(1e-4, FAR, "m"), "Distance of the camera from the target."),
+        key(
+            "azimuth",
+            a_number(-36_000.0, 36_000.0, "degrees"),
+            "Angle about y; 350 to 370 turns the camera by 20 degrees.",
+        )
+        .also(&["yaw", "angle"]),
+        key("elevation", a_number(-89.0, 89.0, "degrees"), "Angle above the horizon.").also(&["pitch"]),
+        key("field_of_view", a_number(5.0, 120.0, "degrees"), "Vertical angle of view.").also(&["fov"]),
     ],
 };
 

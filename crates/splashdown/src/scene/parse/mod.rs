@@ -1,6 +1,7 @@
 //! Reads the text of a scene file into a [`Scene`]. Each section is read separately, so that one mistake does
 //! not hide another.
 
+mod camera;
 mod flow;
 mod fluid;
 mod picture;
@@ -51,25 +52,23 @@ pub(crate) fn parse(
     }
     let reader = Reader::new(Source::new(file, text), folder);
     let (table, mistakes) = DeTable::parse_recoverable(text);
-    for mistake in &mistakes {
-        let span = mistake.span().unwrap_or(0..0);
-        reader.report(reader.source.problem(
-            span,
-            String::new(),
-            format!("not valid TOML: {}", mistake.message().trim()),
-        ));
-    }
-    // The tree of a text with syntax errors is incomplete, so further messages would be misleading.
-    let scene = if mistakes.is_empty() {
-        read(&Section::root(&reader, table.get_ref(), &ROOT), check)
-    } else {
-        Err(Reported)
-    };
+    let scene = report_syntax(&reader, &mistakes)
+        .and_then(|()| read(&Section::root(&reader, table.get_ref(), &ROOT), check));
     let (errors, warnings) = reader.finish();
     match scene {
         Ok(scene) if errors.is_empty() => Ok(Scene { warnings, text: text.into(), ..scene }),
         _ => Err(SceneErrors { file: file.to_owned(), errors }),
     }
+}
+
+/// Reports syntax errors. The tree of a text with syntax errors is incomplete, so further messages would be misleading.
+fn report_syntax(reader: &Reader<'_>, mistakes: &[toml::de::Error]) -> Part<()> {
+    for mistake in mistakes {
+        let span = mistake.span().unwrap_or(0..0);
+        let message = format!("not valid TOML: {}", mistake.message().trim());
+        reader.report(reader.source.problem(span, String::new(), message));
+    }
+    if mistakes.is_empty() { Ok(()) } else { Err(Reported) }
 }
 
 fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
@@ -133,9 +132,10 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
     let camera = root.section("camera").and_then(|section| {
         let picture = output.as_ref().map_or([16, 9], |output| output.picture_size);
         let duration = header.as_ref().map_or(0.0, |header| header.duration);
-        view::read_camera(&section, domain.as_ref().ok(), picture, duration)
+        camera::read_camera(&section, domain.as_ref().ok(), picture, duration)
     });
     let header = header?;
+    let (camera, camera_path) = camera?;
     let probes = probes::check_intervals(root, probes?, 1.0 / header.frame_rate)?;
     let scene = Scene {
         name: header.name,
@@ -151,7 +151,8 @@ fn read(root: &Section<'_>, check: Check) -> Part<Scene> {
         solver: solver?,
         surface: surface?,
         foam: foam?,
-        camera: camera?,
+        camera,
+        camera_path,
         picture: picture?,
         output: output?,
         warnings: Vec::new(),

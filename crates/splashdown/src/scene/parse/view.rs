@@ -1,14 +1,9 @@
-//! The sections `[surface]`, `[foam]`, `[camera]` and `[output]`.
-
-use glam::Vec3;
+//! The sections `[surface]`, `[foam]` and `[output]`.
 
 use super::Part;
-use crate::scene::framing;
-use crate::scene::reader::{Reported, Section};
+use crate::scene::reader::Section;
 use crate::scene::spec::rounded;
-use crate::scene::types::{
-    Camera, Domain, Fluid, FoamSettings, Format, Output, PictureKind, SurfaceSettings,
-};
+use crate::scene::types::{Fluid, FoamSettings, Format, Output, PictureKind, SurfaceSettings};
 
 pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part<SurfaceSettings> {
     let enabled = section.boolean("enabled");
@@ -116,33 +111,6 @@ pub(super) fn read_foam(section: &Section<'_>) -> Part<FoamSettings> {
         ));
     }
     result
-}
-
-pub(super) fn read_camera(
-    section: &Section<'_>,
-    domain: Option<&Domain>,
-    picture: [u32; 2],
-    duration: f32,
-) -> Part<Camera> {
-    let target = section.numbers("target");
-    let distance = section.number("distance");
-    let azimuth = section.number("azimuth");
-    let elevation = section.number("elevation");
-    let field_of_view = section.number("field_of_view");
-    let orbit_speed = section.number("orbit_speed");
-    let camera = Camera {
-        target: Vec3::ZERO,
-        distance: 1.0,
-        azimuth: azimuth?.unwrap_or(25.0),
-        elevation: elevation?.unwrap_or(20.0),
-        field_of_view: field_of_view?.unwrap_or(35.0),
-        orbit_speed: orbit_speed?.unwrap_or(0.0),
-    };
-    let (target, distance) = (target?.map(Vec3::from), distance?);
-    let domain = domain.ok_or(Reported)?;
-    let aimed = Camera { target: target.unwrap_or_else(|| domain.center()), ..camera };
-    let fitting = || framing::fitting_distance(&aimed, domain, picture, duration);
-    Ok(Camera { distance: distance.unwrap_or_else(fitting), ..aimed })
 }
 
 pub(super) fn read_output(section: &Section<'_>, surface: Option<&SurfaceSettings>) -> Part<Output> {
