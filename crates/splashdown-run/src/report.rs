@@ -1,6 +1,7 @@
 //! `run.json`: the summary of a run in its output folder, for other programs and for later reference.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use serde::Serialize;
 use splashdown::Stats;
@@ -10,7 +11,8 @@ use splashdown::scene::Scene;
 use splashdown_gpu::Timings;
 use splashdown_io::{IoError, atomic};
 
-use crate::RunFolder;
+use crate::settings::Notes;
+use crate::{RunFolder, RunSettings};
 
 /// The content of `run.json`.
 #[derive(Debug, Default, Serialize)]
@@ -21,8 +23,14 @@ pub(crate) struct Report {
     pub version: &'static str,
     /// The scene's name.
     pub scene: String,
-    /// The scene's file; null for a built-in scene.
+    /// The scene's file as it was given; null for a built-in scene.
     pub file: Option<String>,
+    /// The absolute path of that file, from whose folder the scene names its meshes and other files.
+    pub scene_path: Option<PathBuf>,
+    /// The text of the scene. With it a folder can be drawn and played after the scene file has changed.
+    pub scene_text: String,
+    /// The settings that changed the scene.
+    pub settings: Notes,
     /// The device's name.
     pub device: Option<String>,
     /// Particle spacing in m.
@@ -104,12 +112,16 @@ pub struct PassNumbers {
 
 impl Report {
     /// The report of a run that starts.
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(scene: &Scene, settings: &RunSettings) -> Self {
         Self {
             status: "running",
             version: env!("CARGO_PKG_VERSION"),
             scene: scene.name.clone(),
             file: scene.source.as_ref().map(|path| path.display().to_string()),
+            // An unknown working directory leaves the path as it was given.
+            scene_path: scene.source.clone().map(|path| std::path::absolute(&path).unwrap_or(path)),
+            scene_text: scene.text.to_string(),
+            settings: Notes::new(settings),
             particle_spacing: scene.fluid.particle_spacing,
             frame_rate: scene.frame_rate,
             gravity: scene.gravity.to_array(),

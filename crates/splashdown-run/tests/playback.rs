@@ -135,18 +135,37 @@ fn missing_mixed_and_truncated_files_are_reported_and_the_rest_is_read() -> Outc
     Ok(())
 }
 
+/// Changes values of the report of a run.
+fn change_report(out: &Path, change: impl Fn(&mut serde_json::Map<String, serde_json::Value>)) -> Outcome {
+    let path = out.join("run.json");
+    let mut report: serde_json::Map<String, serde_json::Value> = serde_json::from_slice(&fs::read(&path)?)?;
+    change(&mut report);
+    Ok(fs::write(path, serde_json::to_vec(&report)?)?)
+}
+
 #[test]
-fn the_scene_comes_from_the_checkpoint_then_from_the_report() -> Outcome {
+fn the_scene_comes_from_the_report_then_from_the_checkpoint_then_from_the_named_file() -> Outcome {
     let folder = tempfile::tempdir()?;
     let out = folder.path().join("out");
     finish(&out, &[Format::Ply])?;
     let scene = Scene::parse(SCENE, "floating.toml")?;
-    assert_eq!(scene_of_run(&out)?.bodies, scene.bodies);
-    fs::remove_dir_all(out.join("checkpoints"))?;
-    // The report names a built-in scene of the same name.
+    let checkpoints = [out.join("checkpoints"), folder.path().join("moved")];
+    // The text in the report is sufficient. The settings of the run are applied: it drew no pictures.
+    fs::rename(&checkpoints[0], &checkpoints[1])?;
+    let read = scene_of_run(&out)?;
+    assert_eq!((&read.bodies, &read.text), (&scene.bodies, &scene.text));
+    assert!(read.output.pictures.is_empty() && !scene.output.pictures.is_empty());
+    // A run of an earlier version has a checkpoint or the name of a scene, here of a built-in one.
+    change_report(&out, |report| {
+        assert!(report.remove("scene_text").is_some_and(|text| text == SCENE));
+    })?;
     assert_ne!(scene_of_run(&out)?.bodies, scene.bodies);
-    let report = out.join("run.json");
-    fs::write(&report, fs::read_to_string(&report)?.replace("\"floating\"", "\"nowhere\""))?;
+    fs::rename(&checkpoints[1], &checkpoints[0])?;
+    assert_eq!(scene_of_run(&out)?.bodies, scene.bodies);
+    fs::remove_dir_all(&checkpoints[0])?;
+    change_report(&out, |report| {
+        report.insert("scene".to_owned(), "nowhere".into());
+    })?;
     let unknown = scene_of_run(&out);
     assert!(
         matches!(&unknown, Err(RunError::UnknownScene(reason)) if reason.contains("nowhere")),
@@ -156,5 +175,30 @@ fn the_scene_comes_from_the_checkpoint_then_from_the_report() -> Outcome {
     let empty = tempfile::tempdir()?;
     assert!(!RunFrames::exist_in(empty.path()));
     assert!(matches!(RunFrames::open(empty.path(), None), Err(RunError::Input(_))));
+    Ok(())
+}
+
+#[test]
+fn a_scene_file_that_has_changed_or_is_gone_does_not_matter() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let [file, mesh, out] = ["my.toml", "ball.obj", "out"].map(|name| folder.path().join(name));
+    fs::write(&mesh, "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")?;
+    fs::write(&file, SCENE.replacen("mesh = \"sphere\"", "mesh = \"ball.obj\"", 1))?;
+    let mut settings = RunSettings::default();
+    (settings.device, settings.pictures, settings.frames) = (Some(Device::Cpu), Some(Vec::new()), Some(1));
+    let scene = Scene::load(&file)?;
+    let mut request = RunRequest::new(scene.clone(), settings);
+    request.out = Some(out.clone());
+    let outcome = run(request, &mut (), &|| Stop::No)?;
+    assert_eq!(outcome.complete_frames, 2);
+    let frames = RunFrames::open(&out, None)?;
+    assert_eq!((frames.scene().bodies.len(), frames.body_meshes()?.len()), (2, 2));
+    // The mesh is found from the folder of the scene file. Without it only its body is missing.
+    assert_eq!(frames.scene().bodies, scene.bodies);
+    fs::remove_file(&file)?;
+    fs::remove_file(&mesh)?;
+    let frames = RunFrames::open(&out, None)?;
+    assert_eq!(frames.scene().bodies, scene.bodies);
+    assert!(frames.body_meshes().is_err() && frames.read(1).is_ok());
     Ok(())
 }

@@ -77,7 +77,7 @@ impl Session {
             }
         }
         let resumed_after = in_place.then(|| run.first_frame());
-        let mut report = Report::new(&scene);
+        let mut report = Report::new(&scene, &settings);
         if in_place {
             let time = f64::from(run.first_frame()) / f64::from(scene.frame_rate);
             report.monitor.alarms = alarms_until(&folder, time + 1e-9);

@@ -66,6 +66,11 @@ impl Notes {
         checked.map_err(|reason| CheckpointError::Malformed(format!("its entry `notes.json`: {reason}")))
     }
 
+    /// The notes in a report; `None` for values that no run stores.
+    pub fn in_report(notes: serde_json::Value) -> Option<Self> {
+        serde_json::from_value(notes).ok().and_then(|notes: Self| notes.checked().ok())
+    }
+
     /// The settings.
     pub fn settings(&self) -> RunSettings {
         let pictures = self.pictures.as_deref().map(choices::<PictureKind>);

@@ -8,6 +8,7 @@ mod built;
 mod derived;
 mod files;
 mod load;
+mod located;
 mod motion;
 mod reference;
 mod resolution;
