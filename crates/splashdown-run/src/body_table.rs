@@ -36,7 +36,7 @@ pub(crate) fn read(path: &Path, time: f64, tolerance: f64) -> Result<Option<Body
     Ok(nearest.map(|(_, state)| state))
 }
 
-/// All complete rows of a table: times in s and states. Forces are not read.
+/// All complete rows of a table with finite numbers: times in s and states. Forces are not read.
 ///
 /// # Errors
 /// [`RunError::Io`] if the file cannot be read; [`RunError::Input`] if it is not the table of a body.
@@ -49,7 +49,8 @@ pub(crate) fn read_all(path: &Path) -> Result<Vec<(f64, BodyState)>, RunError> {
     }
     let rows = lines.filter_map(|line| {
         let values = line.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>().ok()?;
-        (values.len() == COLUMNS.len()).then(|| (values[0], state(&values)))
+        let is_whole = values.len() == COLUMNS.len() && values.iter().all(|value| value.is_finite());
+        is_whole.then(|| (values[0], state(&values)))
     });
     Ok(rows.collect())
 }
@@ -86,6 +87,10 @@ mod tests {
         // Control: other frames have other states, and a time without a row has none.
         assert_ne!(read(&path, 0.04, 0.01)?, Some(state(3)));
         assert_eq!(read(&path, 0.2, 0.01)?, None);
+        // A damaged and an incomplete row are left out.
+        let text = fs::read_to_string(&path).expect("a table").replacen("0.06,", "nan,", 1);
+        fs::write(&path, &text[..text.len() - 9]).expect("written");
+        assert_eq!(read_all(&path)?.into_iter().map(|(time, _)| time).collect::<Vec<_>>(), [0.0, 0.02, 0.04]);
         fs::write(&path, "time (s),force x (N)\n0,1\n").expect("written");
         assert!(matches!(read(&path, 0.0, 0.01), Err(RunError::Input(_))));
         assert!(matches!(read(&folder.path().join("none.csv"), 0.0, 0.01), Err(RunError::Io(_))));

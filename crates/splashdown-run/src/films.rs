@@ -1,5 +1,6 @@
 //! Films of the pictures of a run.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use splashdown::scene::{PictureKind, Scene};
@@ -17,8 +18,8 @@ pub fn frame_rate(scene_frame_rate: f32) -> f32 {
     if scene_frame_rate > MAX_FRAME_RATE { SLOW_MOTION_RATE } else { scene_frame_rate }
 }
 
-/// Whether the encoder is installed.
-pub(crate) fn can_encode() -> bool {
+/// Whether the encoder of films is installed.
+pub fn can_encode() -> bool {
     Film::can_encode(std::path::Path::new("ffmpeg"))
 }
 
@@ -69,6 +70,19 @@ pub(crate) fn add_existing(
         }
     }
     Ok(missing)
+}
+
+/// Makes a film of these pictures, shown `repeats` times.
+///
+/// # Errors
+/// Why there is no film, with the command that makes it from the pictures.
+pub(crate) fn of_pictures(options: FilmOptions, pictures: &[PathBuf], repeats: u32) -> Result<(), String> {
+    let film = Film::start(options).map_err(|error| error.to_string())?;
+    for path in (0..repeats).flat_map(|_| pictures) {
+        let picture = picture::read_png(path).map_err(|error| error.to_string())?;
+        film.push(&Arc::new(picture));
+    }
+    film.finish().map(|_| ()).map_err(|error| error.to_string())
 }
 
 /// Completes the films. A failure is only a warning: the pictures exist and the film can be made from them.

@@ -68,7 +68,7 @@ pub use folder::RunFolder;
 pub use frames::{CompleteFrame, FrameSummary};
 pub use outcome::{RunEnd, RunOutcome};
 #[cfg(not(target_arch = "wasm32"))]
-pub use pictures::{Beside, FinishedRun, Orbit, Painter};
+pub use pictures::{Beside, FinishedFrame, FinishedRun, Orbit, Painter};
 #[cfg(not(target_arch = "wasm32"))]
 pub use playback::{PlayedFrame, RunFrames, reported_scene, scene_of_run};
 pub use recorder::Recorder;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use splashdown_io::{Film, FilmOptions, FrameWriter, Job, Picture, prepare_folder};
 
-use crate::{RunError, export};
+use crate::{RunError, export, films};
 
 /// A recording in progress. Pictures already written remain if a later one fails.
 #[derive(Debug)]
@@ -26,15 +26,32 @@ impl Recorder {
     /// # Errors
     /// [`RunError::Io`] if nothing can be written.
     pub fn start(name: &Path, size: [u32; 2], film_rate: f32) -> Result<(Self, Option<String>), RunError> {
-        let folder = export::unused_folder(name);
-        prepare_folder(&folder)?;
-        let pattern = folder.join("picture_%04d.png").display().to_string();
-        let options = FilmOptions::new(folder.join("film.mp4"), size[0], size[1], film_rate.into(), pattern);
-        let (film, failure) = match Film::start(options) {
+        let mut recorder = Self::without_film(name, size)?;
+        let (film, failure) = match Film::start(recorder.film_options(film_rate)) {
             Ok(film) => (Some(Arc::new(film)), None),
             Err(error) => (None, Some(error.to_string())),
         };
-        Ok((Self { folder, size, writer: FrameWriter::start()?, film, frames: 0 }, failure))
+        recorder.film = film;
+        Ok((recorder, failure))
+    }
+
+    /// As [`start`](Self::start), without a film. [`finish_with_film`](Self::finish_with_film) makes one at the end.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
+    pub fn without_film(name: &Path, size: [u32; 2]) -> Result<Self, RunError> {
+        let folder = export::unused_folder(name);
+        prepare_folder(&folder)?;
+        Ok(Self { folder, size, writer: FrameWriter::start()?, film: None, frames: 0 })
+    }
+
+    fn film_options(&self, rate: f32) -> FilmOptions {
+        let pattern = self.folder.join("picture_%04d.png").display().to_string();
+        FilmOptions::new(self.folder.join("film.mp4"), self.size[0], self.size[1], rate.into(), pattern)
+    }
+
+    fn picture(&self, number: u32) -> PathBuf {
+        self.folder.join(format!("picture_{number:04}.png"))
     }
 
     /// The size that every picture must have, in pixels.
@@ -59,11 +76,24 @@ impl Recorder {
     pub fn add(&mut self, rgba: Vec<u8>) -> Result<(), RunError> {
         let [width, height] = self.size;
         let picture = Arc::new(Picture { width, height, rgba });
-        let mut jobs =
-            vec![Job::Png(self.folder.join(format!("picture_{:04}.png", self.frames)), Arc::clone(&picture))];
+        let mut jobs = vec![Job::Png(self.picture(self.frames), Arc::clone(&picture))];
         jobs.extend(self.film.iter().map(|film| Job::Film(Arc::clone(film), Arc::clone(&picture))));
         self.frames += 1;
         Ok(self.writer.submit(jobs)?)
+    }
+
+    /// Waits for the last picture, and makes a film that shows all pictures `repeats` times, from the files. The program that
+    /// encodes it is started now, so that Ctrl-C, which ends it as well, may stop the drawing of pictures before. Returns
+    /// why there is no film, if there is none.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] with the picture that could not be written.
+    pub fn finish_with_film(mut self, rate: f32, repeats: u32) -> Result<Option<String>, RunError> {
+        let options = self.film_options(rate);
+        let pictures: Vec<PathBuf> = (0..self.frames).map(|number| self.picture(number)).collect();
+        self.film = None;
+        self.finish()?;
+        Ok(films::of_pictures(options, &pictures, repeats).err())
     }
 
     /// Waits for the last picture and the end of the film.
@@ -101,6 +131,27 @@ mod tests {
             }
             // Without ffmpeg there is no film but a reason.
             assert!(expected.join("film.mp4").exists() || failure.is_some());
+        }
+    }
+
+    #[test]
+    fn a_film_at_the_end_shows_the_pictures_several_times() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = |name: &str, repeats: u32| {
+            let mut recorder = Recorder::without_film(&folder.path().join(name), [64, 48]).unwrap();
+            for number in 0..4_u32 {
+                // Noise, so that the size of the film grows with the number of its pictures.
+                let noise = |i: u32| ((i + 12_288 * number).wrapping_mul(2_654_435_761) >> 24) as u8;
+                recorder.add((0..64 * 48 * 4).map(noise).collect()).unwrap();
+            }
+            let failure = recorder.finish_with_film(30.0, repeats).unwrap();
+            let size = std::fs::metadata(folder.path().join(name).join("film.mp4")).map(|data| data.len());
+            assert!(size.is_ok() != failure.is_some(), "{failure:?}");
+            assert!(folder.path().join(name).join("picture_0003.png").exists());
+            size.ok()
+        };
+        if let (Some(once), Some(often)) = (film("once", 1), film("often", 20)) {
+            assert!(often > 2 * once, "{once} and {often} bytes");
         }
     }
 }

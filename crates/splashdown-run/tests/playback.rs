@@ -202,3 +202,24 @@ fn a_scene_file_that_has_changed_or_is_gone_does_not_matter() -> Outcome {
     assert!(frames.body_meshes().is_err() && frames.read(1).is_ok());
     Ok(())
 }
+
+#[test]
+fn frames_without_a_row_in_the_table_of_a_body_are_reported_once() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path();
+    finish(out, &[Format::Ply])?;
+    fs::copy(out.join("mesh/surface_0003.ply"), out.join("mesh/surface_0040.ply"))?;
+    let table = out.join("bodies/ball.csv");
+    let rows: Vec<String> = fs::read_to_string(&table)?.lines().map(str::to_owned).collect();
+    fs::write(&table, format!("{}\n{}\n{}\n{}\n", rows[0], rows[1], rows[2], &rows[3][..20]))?;
+    let frames = RunFrames::open(out, None)?;
+    let problems: Vec<String> = frames.problems().collect();
+    let ball = problems.iter().find(|problem| problem.contains("\"ball\"")).ok_or("not reported")?;
+    assert!(ball.contains("frames 2 to 4, 40") && ball.contains("nearest known place"), "{problems:?}");
+    assert_eq!(frames.read(40)?.bodies[0], frames.read(1)?.bodies[0]);
+    assert!(
+        problems.iter().any(|problem| problem.starts_with("frame 40 without files of spray")),
+        "{problems:?}"
+    );
+    Ok(())
+}

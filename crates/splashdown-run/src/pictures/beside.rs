@@ -8,6 +8,7 @@ use splashdown::foam::{DiffuseKind, DiffuseParticles};
 use splashdown::scene::{Body, Motion, Scene};
 use splashdown_io::{Format, IoError, read_particles_with_attributes};
 
+use crate::playback::scripted;
 use crate::{RunError, body_table};
 
 /// Bodies and foam of a frame.
@@ -80,12 +81,7 @@ impl FrameOfFile {
         // The motion of other bodies does not depend on the run.
         match &body.motion {
             Motion::Static => Ok(BodyState::at(body.mesh.position, body.mesh.rotation)),
-            Motion::Scripted(script) => {
-                let pose = script.pose(self.time);
-                let mut state = BodyState::at(pose.position, pose.orientation);
-                (state.velocity, state.angular_velocity) = (pose.velocity, pose.angular_velocity);
-                Ok(state)
-            }
+            Motion::Scripted(script) => Ok(scripted(script, self.time)),
             Motion::Dynamic { .. } => Err(RunError::Input(format!(
                 "`{}` is missing, so the place of body {:?} is unknown; keep the files of a run in its folder, or remove the body \
                  from the scene",

@@ -19,6 +19,8 @@ use crate::{RunError, appearance};
 pub struct FrameRenderer {
     gpu: Arc<Gpu>,
     scene: Scene,
+    /// The camera of the present picture.
+    camera: Camera,
     kinds: Vec<PictureKind>,
     renderer: Renderer,
     target: Offscreen,
@@ -47,19 +49,30 @@ impl FrameRenderer {
             PlacedBody::new(&body.mesh.vertices, &body.mesh.triangles, colour)
         };
         let bodies = bodies.iter().map(place).collect::<Result<_, _>>()?;
-        Ok(Self { gpu, scene: scene.clone(), kinds, renderer, target, colouring, liquid, bodies })
+        let (scene, camera) = (scene.clone(), scene.camera);
+        Ok(Self { gpu, scene, camera, kinds, renderer, target, colouring, liquid, bodies })
     }
 
-    /// Looks from another camera from now on.
-    pub fn set_camera(&mut self, camera: Camera) {
-        self.scene.camera = camera;
+    /// Opens the shutter for a time that is shorter by this factor from now on.
+    pub fn shorten_exposure(&mut self, factor: f32) {
+        // The frame rate determines nothing else in a picture.
+        self.scene.frame_rate *= factor;
     }
 
-    /// Draws one picture per kind.
+    /// Draws one picture per kind from the scene's camera.
     ///
     /// # Errors
     /// [`RunError::Render`]; [`RunError::Gpu`] if the device was lost.
     pub fn draw(&mut self, data: &FrameData) -> Result<Vec<Arc<Picture>>, RunError> {
+        self.draw_from(data, self.scene.camera_at(data.time))
+    }
+
+    /// As [`draw`](Self::draw), from this camera.
+    ///
+    /// # Errors
+    /// As [`draw`](Self::draw).
+    pub fn draw_from(&mut self, data: &FrameData, camera: Camera) -> Result<Vec<Arc<Picture>>, RunError> {
+        self.camera = camera;
         let pictures = self.pictures(data)?;
         self.gpu.health("a picture")?;
         Ok(pictures)
@@ -88,7 +101,7 @@ impl FrameRenderer {
         let bodies = self.upload_bodies(&data.bodies, 0.0);
         let caption = appearance::caption(&self.scene, data.time);
         let radius = self.scene.fluid.particle_radius();
-        let mut frame = self.empty_frame(data, &caption, foam.as_ref());
+        let mut frame = self.empty_frame(&caption, foam.as_ref());
         frame.bodies = bodies.as_ref().map(UploadedBodies::buffers);
         frame.particles = Some(DrawnParticles::new(particles.buffers(), radius, self.colouring));
         self.target.submit(&mut self.renderer, &frame)
@@ -103,8 +116,7 @@ impl FrameRenderer {
         };
         let foam = upload_foam(&self.gpu, data)?;
         let caption = appearance::caption(&self.scene, data.time);
-        let quality = appearance::quality(&self.scene, self.scene.output.quality);
-        let quality = quality.filter(|_| data.mesh.is_some());
+        let quality = self.quality().filter(|_| data.mesh.is_some());
         let parts = match (&data.mesh, quality) {
             (Some(mesh), Some(Quality { shutter, samples, .. })) => {
                 let spacing = self.scene.fluid.particle_spacing;
@@ -121,7 +133,7 @@ impl FrameRenderer {
                 _ => 0.0,
             };
             let moment = self.moment(data, quality, time)?;
-            let mut frame = self.empty_frame(data, &caption, foam.as_ref());
+            let mut frame = self.empty_frame(&caption, foam.as_ref());
             frame.bodies = moment.bodies.as_ref().map(UploadedBodies::buffers);
             frame.surface =
                 moment.surface.as_ref().map(|surface| DrawnSurface::new(surface.buffers(), self.liquid));
@@ -137,14 +149,16 @@ impl FrameRenderer {
         }
     }
 
+    /// The scene's quality. The lens suits the distance of the camera.
+    fn quality(&self) -> Option<Quality> {
+        let mut quality = appearance::quality(&self.scene, self.scene.output.quality)?;
+        quality.aperture *= self.camera.distance / self.scene.camera.distance;
+        Some(quality)
+    }
+
     /// Everything of a frame that liquid and particles have in common, without bodies.
-    fn empty_frame<'a>(
-        &self,
-        data: &FrameData,
-        caption: &'a str,
-        foam: Option<&'a UploadedFoam>,
-    ) -> Frame<'a> {
-        let camera = appearance::camera(&self.scene, data.time);
+    fn empty_frame<'a>(&self, caption: &'a str, foam: Option<&'a UploadedFoam>) -> Frame<'a> {
+        let camera = appearance::placed_camera(&self.camera);
         let mut frame = appearance::empty_frame(&self.scene, camera).with_caption(caption);
         frame.foam = foam.map(|foam| DrawnFoam::new(foam.buffers(), self.scene.fluid.particle_radius()));
         frame

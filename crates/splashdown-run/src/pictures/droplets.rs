@@ -36,7 +36,10 @@ pub(super) fn separate(
 }
 
 /// As [`separate`]; `known` are the ids of the particles that are not part of the mesh.
-fn with_droplets(
+///
+/// # Errors
+/// If the particles are too far apart.
+pub(super) fn with_droplets(
     mut mesh: Mesh,
     particles: &Particles,
     known: &[u32],

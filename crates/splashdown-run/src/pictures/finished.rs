@@ -1,125 +1,219 @@
 //! The frames of a finished run, read from its folder to be drawn again.
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
-use splashdown::SimulationError;
-use splashdown::bodies::body_meshes;
+use splashdown::BodyState;
 use splashdown::scene::{PictureKind, Scene};
-use splashdown_io::{Format, Picture, read_mesh};
+use splashdown_io::{Mesh, Particles, Picture};
 
-use super::beside::{Beside, FrameOfFile};
 use super::draw::FrameRenderer;
-use super::droplets::separate;
-use super::motion::{is_blurred, with_velocities};
+use super::droplets::with_droplets;
+use super::known_bodies::KnownBodies;
+use super::motion::{advanced, is_blurred, with_velocities_of};
+use super::orbit::Orbit;
 use super::{FrameData, drawing_device};
-use crate::RunError;
-use crate::folder::MESHES;
+use crate::{PlayedFrame, RunError, RunFrames};
 
-/// Where the camera stands, relative to that of the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Orbit {
-    /// Added to the azimuth of the first frame, in degrees.
-    pub azimuth: f32,
-    /// Added to the azimuth from the first to the last frame, in degrees.
-    pub turn: f32,
-    /// Elevation above the horizon in degrees; `None`: that of the scene.
-    pub elevation: Option<f32>,
-    /// Factor on the distance.
-    pub distance: f32,
-}
-
-impl Default for Orbit {
-    fn default() -> Self {
-        Self { azimuth: 0.0, turn: 0.0, elevation: None, distance: 1.0 }
-    }
-}
-
-/// Draws surfaces from the files of a finished or interrupted run.
+/// Draws surfaces or particles from the files of a finished or interrupted run.
+///
+/// Files that are missing or damaged are problems and not errors, as in playback ([`RunFrames`]): what exists of a frame is
+/// drawn. Only a frame without the liquid cannot be read.
 pub struct FinishedRun {
-    folder: PathBuf,
-    scene: Scene,
-    meshes: Vec<(u32, PathBuf)>,
+    frames: RunFrames,
+    kind: PictureKind,
     renderer: FrameRenderer,
+    /// Which of the bodies with a known place have a mesh.
+    has_mesh: Vec<bool>,
+    /// Whether frames are drawn between those of the run.
+    is_slowed: bool,
+    problems: Vec<String>,
+}
+
+/// A frame of a finished run, as it is drawn.
+#[derive(Debug)]
+pub struct FinishedFrame {
+    data: FrameData,
+    moves: bool,
+    problems: Vec<String>,
+}
+
+impl FinishedFrame {
+    /// Files that cannot be read, and why. The frame is drawn without them.
+    pub fn problems(&self) -> &[String] {
+        &self.problems
+    }
+
+    /// Whether the velocities of the liquid are known, so that it can be drawn at times near that of the frame.
+    pub fn moves(&self) -> bool {
+        self.moves
+    }
 }
 
 impl std::fmt::Debug for FinishedRun {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("FinishedRun")
-            .field("folder", &self.folder)
-            .field("meshes", &self.meshes.len())
-            .finish()
+        f.debug_struct("FinishedRun").field("frames", &self.frames).field("kind", &self.kind).finish()
     }
 }
 
 impl FinishedRun {
-    /// Opens a folder with meshes of a scene.
+    /// Opens the folder of a run to draw its surfaces. `scene` is that of the run, whose camera, appearance and output may be
+    /// changed.
     ///
     /// # Errors
-    /// [`RunError::Input`] if there are no meshes; [`RunError::Simulation`] if the meshes of the bodies cannot be read;
-    /// [`RunError::Gpu`] without a driver; [`RunError::Render`] if the device cannot draw pictures of the scene's size.
+    /// As [`open_for`](Self::open_for).
     pub fn open(folder: &Path, scene: &Scene) -> Result<Self, RunError> {
-        let meshes = mesh_files(folder)?;
-        let bodies = body_meshes(scene).map_err(SimulationError::from)?;
-        let kinds = vec![PictureKind::Surface];
-        let renderer = FrameRenderer::new(drawing_device(None)?, scene, &bodies, kinds)?;
-        Ok(Self { folder: folder.to_owned(), scene: scene.clone(), meshes, renderer })
+        Self::open_for(folder, scene, PictureKind::Surface)
     }
 
-    /// The numbers of the frames that have a mesh.
+    /// As [`open`](Self::open), to draw surfaces or particles.
+    ///
+    /// # Errors
+    /// [`RunError::Input`] if there are no files for pictures of this kind; [`RunError::Gpu`] without a driver;
+    /// [`RunError::Render`] if the device cannot draw pictures of the scene's size.
+    pub fn open_for(folder: &Path, scene: &Scene, kind: PictureKind) -> Result<Self, RunError> {
+        let wanted = match kind {
+            PictureKind::Surface => {
+                "meshes that can be read (mesh/surface_0000.ply, ...): give the output folder of a run with meshes as PLY, \
+                 OBJ, STL or GLB, or draw the particles"
+            }
+            PictureKind::Particles => {
+                "particles that can be read (particles/particles_0000.ply, ...): give the output folder of a run with \
+                 particles, or draw the surface"
+            }
+        };
+        let nothing = || RunError::Input(format!("`{}` contains no {wanted}", folder.display()));
+        if !RunFrames::exist_in(folder) {
+            return Err(nothing());
+        }
+        let frames = RunFrames::open(folder, Some(scene.clone()))?;
+        if frames.numbers_with(kind).next().is_none() {
+            return Err(nothing());
+        }
+        let KnownBodies { meshes, has_mesh, problems } = KnownBodies::of(&frames);
+        let renderer = FrameRenderer::new(drawing_device(None)?, scene, &meshes, vec![kind])?;
+        Ok(Self { frames, kind, renderer, has_mesh, is_slowed: false, problems })
+    }
+
+    /// Draws frames between those of the run from now on: `factor` pictures per frame. The shutter is open for a shorter
+    /// time accordingly.
+    pub fn slow_down(&mut self, factor: f32) {
+        self.is_slowed = true;
+        self.renderer.shorten_exposure(factor);
+    }
+
+    /// The scene of the run.
+    pub fn scene(&self) -> &Scene {
+        self.frames.scene()
+    }
+
+    /// The numbers of the frames with a file of the liquid, ascending; there is at least one.
     pub fn frames(&self) -> impl Iterator<Item = u32> + Clone {
-        self.meshes.iter().map(|(frame, _)| *frame)
+        self.frames.numbers_with(self.kind)
+    }
+
+    /// What is missing beside the liquid in the frames that are `wanted`: foam, meshes and places of bodies.
+    pub fn problems(&self, wanted: impl Fn(u32) -> bool) -> Vec<String> {
+        let beside = self.frames.problems_beside(wanted);
+        self.problems.iter().cloned().chain(beside).collect()
+    }
+
+    /// Reads a frame.
+    ///
+    /// # Errors
+    /// [`RunError::Input`] if the frame does not exist, or no file of its liquid can be read; [`RunError::Simulation`] if its
+    /// particles are too far apart.
+    pub fn read(&self, number: u32) -> Result<FinishedFrame, RunError> {
+        let mut played = self.frames.read_for(Some(self.kind), number)?;
+        let problems = std::mem::take(&mut played.problems);
+        let is_empty = played.particles.as_ref().is_some_and(|particles| particles.is_empty());
+        let exists = match self.kind {
+            PictureKind::Particles => played.particles.is_some(),
+            PictureKind::Surface => played.mesh.is_some() || is_empty,
+        };
+        if !exists {
+            let reason =
+                if problems.is_empty() { "it has no file to draw".to_owned() } else { problems.join("; ") };
+            return Err(RunError::Input(reason));
+        }
+        let data = self.prepare(played)?;
+        let moves = match (&data.mesh, self.kind) {
+            (Some(mesh), PictureKind::Surface) => mesh.velocities.len() == mesh.vertices.len(),
+            (None, PictureKind::Surface) => true,
+            (_, PictureKind::Particles) => data.particles.velocities.len() == data.particles.positions.len(),
+        };
+        Ok(FinishedFrame { data, moves, problems })
+    }
+
+    /// The mesh without isolated particles, with velocities if they are needed, and these particles.
+    fn separate(
+        &self,
+        mesh: Mesh,
+        particles: &Particles,
+        droplets: Option<&Particles>,
+    ) -> Result<(Option<Mesh>, Option<Particles>), RunError> {
+        let scene = self.frames.scene();
+        let known = droplets.map_or(&[][..], |droplets| &droplets.ids);
+        let (mut mesh, separated) = with_droplets(mesh, particles, known, scene)?;
+        if is_blurred(scene) || self.is_slowed {
+            mesh = with_velocities_of(mesh, particles, scene)?;
+        }
+        Ok((Some(mesh), separated))
+    }
+
+    /// What is drawn of a frame.
+    fn prepare(&self, played: PlayedFrame) -> Result<FrameData, RunError> {
+        let PlayedFrame { number, time, particles, mesh, droplets, foam, bodies, .. } = played;
+        let (mesh, separated) = match (mesh, &particles) {
+            (Some(mesh), Some(particles)) => self.separate(mesh, particles, droplets.as_ref())?,
+            (mesh, _) => (mesh, None),
+        };
+        Ok(FrameData {
+            index: number,
+            time,
+            particles: particles.unwrap_or_default().into(),
+            mesh: mesh.map(Arc::new),
+            // Without particles the droplets are those of the run.
+            droplets: separated.or(droplets).map(Arc::new),
+            foam: foam.map(Arc::new),
+            bodies: self.with_meshes(bodies),
+        })
+    }
+
+    /// The states of the bodies that have a mesh.
+    fn with_meshes(&self, states: Vec<BodyState>) -> Arc<[BodyState]> {
+        states.into_iter().zip(&self.has_mesh).filter(|(_, has)| **has).map(|(state, _)| state).collect()
     }
 
     /// Draws a frame; `progress` is 0 for the first and 1 for the last frame of the film.
     ///
     /// # Errors
-    /// [`RunError::Input`] if there is no such frame or a file that the scene needs is missing; [`RunError::Io`] if its
-    /// files cannot be read; [`RunError::Render`]; [`RunError::Gpu`] if the device was lost.
+    /// As [`read`](Self::read) and [`draw_frame`](Self::draw_frame).
     pub fn draw(&mut self, frame: u32, orbit: &Orbit, progress: f32) -> Result<Arc<Picture>, RunError> {
-        let Some((_, path)) = self.meshes.iter().find(|(number, _)| *number == frame) else {
-            return Err(RunError::Input(format!("frame {frame} has no mesh in `{}`", self.folder.display())));
-        };
-        let (mut mesh, droplets) = separate(read_mesh(path)?, path, &self.scene)?;
-        if is_blurred(&self.scene) {
-            mesh = with_velocities(mesh, path, &self.scene)?;
-        }
-        let of_file = FrameOfFile::of(path, &self.scene);
-        let time = of_file.time;
-        let Beside { bodies, foam } = of_file.beside(&self.scene)?;
-        let mut camera = self.scene.camera;
-        camera.azimuth += orbit.azimuth + orbit.turn * progress;
-        camera.elevation = orbit.elevation.unwrap_or(camera.elevation);
-        camera.distance *= orbit.distance;
-        self.renderer.set_camera(camera);
-        let data = FrameData {
-            index: frame,
-            time,
-            particles: Arc::default(),
-            mesh: Some(Arc::new(mesh)),
-            droplets: droplets.map(Arc::new),
-            foam,
-            bodies,
-        };
-        let pictures = self.renderer.draw(&data)?;
+        let frame = self.read(frame)?;
+        self.draw_frame(&frame, 0.0, orbit, progress)
+    }
+
+    /// Draws a frame at a time in s relative to that of the frame: liquid, droplets and foam move by their velocities, bodies
+    /// and the camera are where they are at that time. `progress` is 0 for the first and 1 for the last picture of the film.
+    ///
+    /// # Errors
+    /// [`RunError::Render`]; [`RunError::Gpu`] if the device was lost.
+    pub fn draw_frame(
+        &mut self,
+        frame: &FinishedFrame,
+        offset: f64,
+        orbit: &Orbit,
+        progress: f32,
+    ) -> Result<Arc<Picture>, RunError> {
+        let moved = (offset != 0.0).then(|| {
+            let time = frame.data.time + offset;
+            let bodies = self.with_meshes(self.frames.bodies_at(time));
+            advanced(&frame.data, offset, bodies, self.frames.scene())
+        });
+        let data = moved.as_ref().unwrap_or(&frame.data);
+        let camera = orbit.camera(self.frames.scene().camera_at(data.time), progress);
+        let pictures = self.renderer.draw_from(data, camera)?;
         pictures.into_iter().next().ok_or_else(|| RunError::Input("no picture was drawn".to_owned()))
     }
-}
-
-/// The mesh of every frame; of several formats the first that can be read.
-fn mesh_files(folder: &Path) -> Result<Vec<(u32, PathBuf)>, RunError> {
-    let readable = |path: &Path| Format::of(path).is_some_and(|format| format.reads_meshes());
-    let mut files: Vec<(u32, PathBuf)> = MESHES.files(folder).filter(|(_, path)| readable(path)).collect();
-    files.sort();
-    let mut seen = BTreeSet::new();
-    files.retain(|(frame, _)| seen.insert(*frame));
-    if files.is_empty() {
-        return Err(RunError::Input(format!(
-            "`{}` contains no meshes that can be read (mesh/surface_0000.ply, ...): give the output folder of a run \
-             with meshes as PLY, OBJ, STL or GLB",
-            folder.display()
-        )));
-    }
-    Ok(files)
 }

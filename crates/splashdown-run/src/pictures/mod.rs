@@ -4,7 +4,9 @@ mod beside;
 mod draw;
 mod droplets;
 mod finished;
+mod known_bodies;
 mod motion;
+mod orbit;
 mod painter;
 
 use std::path::PathBuf;
@@ -22,8 +24,9 @@ use crate::{RunError, RunFolder};
 use draw::FrameRenderer;
 
 pub use beside::Beside;
-pub use finished::{FinishedRun, Orbit};
+pub use finished::{FinishedFrame, FinishedRun};
 pub(crate) use motion::is_blurred;
+pub use orbit::Orbit;
 pub use painter::Painter;
 
 /// Number of frames that can wait while one is drawn.

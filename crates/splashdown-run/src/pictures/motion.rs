@@ -1,14 +1,17 @@
 //! Motion while the shutter is open: the liquid moves by the velocities of its vertices, and bodies by their own.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use splashdown::BodyState;
+use splashdown::foam::DiffuseParticles;
 use splashdown::glam::{Quat, Vec3};
 use splashdown::scene::Scene;
 use splashdown::surface::{SurfaceParams, Walls, interpolate};
-use splashdown_io::{Mesh, read_particles};
+use splashdown_io::{Mesh, Particles, read_particles};
 use splashdown_render::Domain;
 
+use super::FrameData;
 use super::droplets::particles_beside;
 use crate::{RunError, appearance};
 
@@ -31,14 +34,54 @@ pub(super) fn moments(mesh: &Mesh, bodies: &[BodyState], shutter: f32, samples: 
 
 /// The vertices after a time in s. A vertex inside the domain remains there.
 pub(super) fn moved(mesh: &Mesh, domain: &Domain, time: f32) -> Vec<[f32; 3]> {
+    moved_points(&mesh.vertices, &mesh.velocities, domain, time)
+}
+
+/// Points after a time in s. A point inside the domain remains there; without velocities all points rest.
+fn moved_points(points: &[[f32; 3]], velocities: &[[f32; 3]], domain: &Domain, time: f32) -> Vec<[f32; 3]> {
+    if velocities.len() != points.len() {
+        return points.to_vec();
+    }
     let (low, high) = (Vec3::from(domain.min), Vec3::from(domain.max));
-    let all = mesh.vertices.iter().zip(&mesh.velocities);
-    all.map(|(&vertex, &velocity)| {
-        let vertex = Vec3::from(vertex);
-        let place = vertex + time * Vec3::from(velocity);
-        place.clamp(low.min(vertex), high.max(vertex)).into()
+    let all = points.iter().zip(velocities);
+    all.map(|(&point, &velocity)| {
+        let point = Vec3::from(point);
+        let place = point + time * Vec3::from(velocity);
+        place.clamp(low.min(point), high.max(point)).into()
     })
     .collect()
+}
+
+/// A frame after a time in s, which may be negative: liquid, droplets and foam have moved by their velocities, and the bodies
+/// have these states.
+pub(super) fn advanced(data: &FrameData, offset: f64, bodies: Arc<[BodyState]>, scene: &Scene) -> FrameData {
+    let domain = appearance::domain(scene);
+    let step = offset as f32;
+    let moved_particles = |particles: &Particles| {
+        let mut moved = particles.clone();
+        moved.positions = moved_points(&particles.positions, &particles.velocities, &domain, step);
+        Arc::new(moved)
+    };
+    let moved_mesh = |mesh: &Arc<Mesh>| {
+        let mut after = Mesh::clone(mesh);
+        after.vertices = moved_points(&mesh.vertices, &mesh.velocities, &domain, step);
+        Arc::new(after)
+    };
+    let moved_foam = |foam: &Arc<DiffuseParticles>| {
+        let mut after = DiffuseParticles::clone(foam);
+        after.positions = moved_points(&foam.positions, &foam.velocities, &domain, step);
+        Arc::new(after)
+    };
+    FrameData {
+        index: data.index,
+        time: data.time + offset,
+        // Pictures of the surface do not show the particles.
+        particles: if data.mesh.is_some() { Arc::default() } else { moved_particles(&data.particles) },
+        mesh: data.mesh.as_ref().map(moved_mesh),
+        droplets: data.droplets.as_deref().map(moved_particles),
+        foam: data.foam.as_ref().map(moved_foam),
+        bodies,
+    }
 }
 
 /// Position and orientation of a body after a time in s.
@@ -53,9 +96,18 @@ pub(super) fn moved_body(state: &BodyState, time: f32) -> ([f32; 3], [f32; 4]) {
 /// # Errors
 /// [`RunError::Io`] if the file cannot be read; [`RunError::Simulation`] if the particles are too far apart.
 pub(super) fn with_velocities(mesh: Mesh, path: &Path, scene: &Scene) -> Result<Mesh, RunError> {
-    let Some(file) = particles_beside(path).filter(|_| mesh.velocities.is_empty()) else { return Ok(mesh) };
-    let particles = read_particles(&file)?;
-    if particles.velocities.len() != particles.positions.len() {
+    match particles_beside(path).filter(|_| mesh.velocities.is_empty()) {
+        Some(file) => with_velocities_of(mesh, &read_particles(&file)?, scene),
+        None => Ok(mesh),
+    }
+}
+
+/// As [`with_velocities`], from the particles themselves.
+///
+/// # Errors
+/// [`RunError::Simulation`] if the particles are too far apart.
+pub(super) fn with_velocities_of(mesh: Mesh, particles: &Particles, scene: &Scene) -> Result<Mesh, RunError> {
+    if !mesh.velocities.is_empty() || particles.velocities.len() != particles.positions.len() {
         return Ok(mesh);
     }
     let params = SurfaceParams::of_scene(&scene.surface, scene.fluid.particle_spacing, Walls::NONE);
@@ -80,6 +132,37 @@ mod tests {
         for (place, expected) in moved.into_iter().zip([[0.2, 0.6, 0.5], [1.0, 0.6, 0.5], [1.5, 0.6, 0.5]]) {
             assert!(Vec3::from(place).distance(expected.into()) < 1e-6, "{place:?}");
         }
+    }
+
+    #[test]
+    fn an_advanced_frame_shows_a_later_moment() {
+        let text = "[scene]\nname = \"cube\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\n\
+            particle_spacing = 0.1\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n";
+        let scene = Scene::parse(text, "cube").unwrap_or_else(|errors| panic!("{errors}"));
+        let mut drops = Particles::from_positions(vec![[0.5, 0.9, 0.5]]);
+        drops.velocities = vec![[0.0, 2.0, 0.0]];
+        let mut data = FrameData {
+            index: 3,
+            time: 0.06,
+            particles: Arc::default(),
+            mesh: Some(Arc::new(mesh([1.0, 0.5, 0.0]))),
+            droplets: Some(Arc::new(drops)),
+            foam: None,
+            bodies: Arc::from([]),
+        };
+        let bodies: Arc<[BodyState]> = Arc::from([BodyState::at(Vec3::X, Quat::IDENTITY)]);
+        let later = advanced(&data, 0.01, Arc::clone(&bodies), &scene);
+        assert_eq!((later.bodies.len(), later.index), (1, 3));
+        assert!((later.time - 0.07).abs() < 1e-12);
+        assert_eq!(later.mesh.as_ref().map(|mesh| mesh.vertices[0]), Some([0.01, 0.505, 0.5]));
+        assert_eq!(later.droplets.as_ref().map(|drops| drops.positions[0]), Some([0.5, 0.92, 0.5]));
+        // Backwards as well, and not out of the domain.
+        let earlier = advanced(&data, -0.01, Arc::clone(&bodies), &scene);
+        assert_eq!(earlier.mesh.as_ref().map(|mesh| mesh.vertices[0]), Some([0.0, 0.495, 0.5]));
+        // Control: without velocities the liquid rests.
+        data.mesh = Some(Arc::new(Mesh::new(vec![[0.5; 3]], vec![])));
+        let rests = advanced(&data, 0.01, bodies, &scene);
+        assert_eq!(rests.mesh.as_ref().map(|mesh| mesh.vertices[0]), Some([0.5; 3]));
     }
 
     #[test]

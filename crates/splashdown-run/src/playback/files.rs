@@ -70,6 +70,15 @@ impl FileIndex {
         (any(|files| !files.particles.is_empty()), any(|files| !files.meshes.is_empty()))
     }
 
+    /// Frames without any file of spray, foam or bubbles, in words; `None` if there are none.
+    pub fn without_foam(&self, wanted: impl Fn(u32) -> bool) -> Option<String> {
+        let lacks = |(number, files): &(&u32, &FilesOfFrame)| {
+            wanted(**number) && files.diffuse.iter().all(Vec::is_empty)
+        };
+        let ranges = ranges(self.0.iter().filter(lacks).map(|(number, _)| *number));
+        (!ranges.is_empty()).then(|| format!("{} without files of spray, foam and bubbles", listed(&ranges)))
+    }
+
     /// Missing numbers, and frames without particles or a mesh where others have them.
     pub fn problems(&self) -> Vec<String> {
         let (particles, meshes) = self.has_particles_and_meshes();
@@ -97,7 +106,7 @@ impl FileIndex {
 }
 
 /// The first and last numbers of the ranges in ascending numbers.
-fn ranges(numbers: impl Iterator<Item = u32>) -> Vec<(u32, u32)> {
+pub fn ranges(numbers: impl Iterator<Item = u32>) -> Vec<(u32, u32)> {
     let mut ranges: Vec<(u32, u32)> = Vec::new();
     for number in numbers {
         match ranges.last_mut() {
@@ -109,7 +118,7 @@ fn ranges(numbers: impl Iterator<Item = u32>) -> Vec<(u32, u32)> {
 }
 
 /// Numbers of frames in words, such as `frames 3, 7 to 9`.
-fn listed(ranges: &[(u32, u32)]) -> String {
+pub fn listed(ranges: &[(u32, u32)]) -> String {
     let shown = ranges.iter().take(4).map(|&(first, last)| match last - first {
         0 => first.to_string(),
         _ => format!("{first} to {last}"),

@@ -10,7 +10,7 @@ mod scene;
 use std::path::{Path, PathBuf};
 
 use splashdown::foam::{DiffuseKind, DiffuseParticles};
-use splashdown::scene::Scene;
+use splashdown::scene::{PictureKind, Scene};
 use splashdown::{BodyMesh, BodyState, SimulationError};
 use splashdown_io::{IoError, Mesh, Particles, read_mesh, read_particles, read_particles_with_attributes};
 
@@ -18,6 +18,7 @@ use crate::{RunError, RunFolder};
 use bodies::Track;
 use files::{FileIndex, FilesOfFrame};
 
+pub(crate) use bodies::scripted;
 pub use scene::{reported_scene, scene_of_run};
 
 /// The frames in the folder of a run.
@@ -117,9 +118,55 @@ impl RunFrames {
         !RunFolder::new(self.folder.clone(), 0).checkpoints().is_empty()
     }
 
-    /// What is missing: numbers without a file, frames with only a part of the files, and bodies without a table.
+    /// What is missing: numbers without a file, frames with only a part of the files, and bodies without a table or with
+    /// an incomplete one.
     pub fn problems(&self) -> impl Iterator<Item = String> {
-        self.index.problems().into_iter().chain(self.problems.iter().cloned())
+        self.index.problems().into_iter().chain(self.problems_beside(|_| true))
+    }
+
+    /// What is missing beside the fluid in these frames: foam, and the places of bodies.
+    pub(crate) fn problems_beside(&self, wanted: impl Fn(u32) -> bool) -> Vec<String> {
+        let foam = self.scene.foam.enabled.then(|| self.index.without_foam(&wanted)).flatten();
+        let mut problems: Vec<String> = foam.into_iter().chain(self.problems.iter().cloned()).collect();
+        let tolerance = 0.5 / f64::from(self.scene.frame_rate);
+        for track in &self.tracks {
+            let is_unknown = |&number: &u32| wanted(number) && !track.knows(self.time(number), tolerance);
+            let unknown = files::ranges(self.numbers().filter(is_unknown));
+            if !unknown.is_empty() {
+                problems.push(format!(
+                    "the body {:?} is shown at its nearest known place in {}: its table has no row of them",
+                    track.name,
+                    files::listed(&unknown)
+                ));
+            }
+        }
+        problems
+    }
+
+    /// Simulated time of a frame in s.
+    pub(crate) fn time(&self, number: u32) -> f64 {
+        f64::from(number) / f64::from(self.scene.frame_rate)
+    }
+
+    /// The numbers of the frames with files from which pictures of this kind are drawn, ascending.
+    pub(crate) fn numbers_with(&self, kind: PictureKind) -> impl Iterator<Item = u32> + Clone {
+        self.numbers().filter(move |&number| {
+            self.index.files(number).is_some_and(|files| match kind {
+                PictureKind::Particles => !files.particles.is_empty(),
+                PictureKind::Surface => !files.meshes.is_empty(),
+            })
+        })
+    }
+
+    /// The states of the bodies at a time in s, which may lie between two frames, in the order of
+    /// [`RunFrames::body_meshes`].
+    pub fn bodies_at(&self, time: f64) -> Vec<BodyState> {
+        self.tracks.iter().map(|track| track.state_between(time)).collect()
+    }
+
+    /// The names of the bodies whose places are known.
+    pub(crate) fn body_names(&self) -> impl Iterator<Item = &str> {
+        self.tracks.iter().map(|track| track.name.as_str())
     }
 
     /// The meshes of the bodies whose places are known.
@@ -137,23 +184,30 @@ impl RunFrames {
     /// # Errors
     /// [`RunError::Input`] if there is no such frame, or neither its particles nor its mesh can be read.
     pub fn read(&self, number: u32) -> Result<PlayedFrame, RunError> {
+        self.read_for(None, number)
+    }
+
+    /// Reads what is needed for pictures of this kind: those of particles need neither mesh nor droplets. `None`: everything.
+    ///
+    /// # Errors
+    /// As [`RunFrames::read`].
+    pub(crate) fn read_for(&self, kind: Option<PictureKind>, number: u32) -> Result<PlayedFrame, RunError> {
         let Some(files) = self.index.files(number) else {
             return Err(RunError::Input(format!("`{}` has no frame {number}", self.folder.display())));
         };
-        let mut frame = PlayedFrame {
-            number,
-            time: f64::from(number) / f64::from(self.scene.frame_rate),
-            ..PlayedFrame::default()
-        };
+        let mut frame = PlayedFrame { number, time: self.time(number), ..PlayedFrame::default() };
         let FilesOfFrame { particles, meshes, droplets, diffuse } = files;
         let problems = &mut frame.problems;
         frame.particles = first(particles, read_points, problems);
         // The surface of no particles is a file without triangles, which is not a problem.
         let is_empty = frame.particles.as_ref().is_some_and(Particles::is_empty);
-        if !is_empty {
+        let with_surface = kind != Some(PictureKind::Particles);
+        if !is_empty && with_surface {
             frame.mesh = first(meshes, read_mesh, problems);
         }
-        frame.droplets = first(droplets, read_points, problems);
+        if with_surface {
+            frame.droplets = first(droplets, read_points, problems);
+        }
         if frame.particles.is_none() && frame.mesh.is_none() {
             return Err(RunError::Input(frame.problems.join("; ")));
         }
