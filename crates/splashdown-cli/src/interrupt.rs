@@ -13,14 +13,17 @@ impl Interrupt {
     /// Listens for Ctrl-C and, on Unix, for SIGTERM and SIGHUP. A signal that the parent process has chosen to ignore,
     /// as `nohup` does with SIGHUP, remains ignored.
     pub fn listen() -> Self {
+        Self::listen_with("Stopping after the current frame; press Ctrl-C again to stop at once.")
+    }
+
+    /// As [`listen`](Self::listen), with this message at the first signal.
+    pub fn listen_with(message: &'static str) -> Self {
         let count = Arc::new(AtomicU8::new(0));
         let counter = Arc::clone(&count);
         let handler = move || {
             let before = counter.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |n| n.checked_add(1));
             if before == Ok(0) {
-                crate::console::note(
-                    "\nStopping after the current frame; press Ctrl-C again to stop at once.",
-                );
+                crate::console::note(format!("\n{message}"));
             }
         };
         let ignored = ignored::find();

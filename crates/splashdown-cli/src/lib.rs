@@ -79,7 +79,7 @@ fn dispatch(command: &Command) -> Result<Exit, Failure> {
         Command::Doctor(arguments) => commands::doctor::run(arguments),
         Command::Scenes(arguments) => commands::scenes::run(arguments)?,
         Command::Surface(arguments) => commands::surface::run(arguments)?,
-        Command::Render(arguments) => commands::render::run(arguments)?,
+        Command::Render(arguments) => return commands::render::run(arguments),
         #[cfg(feature = "plot")]
         Command::Plot(arguments) => commands::plot::run(arguments)?,
         #[cfg(not(feature = "plot"))]

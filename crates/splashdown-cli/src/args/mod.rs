@@ -25,7 +25,7 @@ use crate::exit;
 
 pub use bench::BenchArguments;
 pub use plot::PlotArguments;
-pub use render::RenderArguments;
+pub use render::{FrameRange, RenderArguments};
 pub use run::RunArguments;
 pub use scenes::{ScenesAction, ScenesArguments};
 pub use surface::SurfaceArguments;

@@ -3,20 +3,29 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use splashdown::scene::PictureQuality;
+use splashdown::scene::{ColourBy, PictureKind, PictureQuality};
 
-use super::{choice, limit};
+use super::{choice, limit, whole};
 
 const EXAMPLES: &str = "\
 Examples:
   splashdown render out/dam-break
   splashdown render out/dam-break --quality final --frames 40 -o still
   splashdown render out/my --scene my.toml --frames 20..80 --turn 90 --size 1920x1080
-  splashdown render out/my --scene my.toml --slow 4
+  splashdown render out/my --frames 100.. --slow 4 --loop 3
+  splashdown render out/my --pictures particles --colour-by pressure
+  splashdown render out/my --camera-path flight.toml
 
-Reads the meshes and the spray, foam and bubbles of the run, and writes numbered PNG pictures and,
-with ffmpeg and several frames, a film. Isolated particles, which are not part of the meshes, are
-drawn as droplets if the run has particle files. Frames without a mesh are left out and reported once.";
+Reads the meshes or particles and the spray, foam and bubbles of the run, and writes numbered PNG
+pictures and, with ffmpeg and several pictures, a film. Isolated particles, which are not part of the
+meshes, are drawn as droplets if the run has particle files.
+
+Frames that are missing or cannot be read are left out, and damaged files beside them are not drawn.
+Each problem is reported once, at the end, and the exit code is 0 if there is a picture. Ctrl-C ends
+the film with the pictures so far.
+
+A slow film shows pictures between the frames: liquid, droplets and foam of the nearest frame are moved
+by their velocities, and bodies and camera are where they are at that time.";
 
 /// Options of `render`.
 #[derive(Debug, Args)]
@@ -25,15 +34,21 @@ pub struct RenderArguments {
     /// Output folder of a run with meshes
     #[arg(value_name = "RUN")]
     pub run: PathBuf,
-    /// Scene file or built-in scene of the run [default: the one that run.json names]
+    /// Scene file or built-in scene to draw with [default: the scene of the run, as it was]
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     /// Folder of the pictures and the film; numbered if it exists [default: RUN/render]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// A frame, or the first and the last frame [default: all]
+    /// A frame, or the first and the last frame, which may be left out: 3, 20..80, 20.., ..80 [default: all]
     #[arg(short, long, value_name = "N|A..B", value_parser = frames)]
-    pub frames: Option<(u32, u32)>,
+    pub frames: Option<FrameRange>,
+    /// What is drawn [default: the surface if the run has meshes]
+    #[arg(long, value_name = "WHAT", value_parser = choice::<PictureKind>())]
+    pub pictures: Option<PictureKind>,
+    /// Quantity that colours the particles [default: the scene's]
+    #[arg(long, value_name = "QUANTITY", value_parser = choice::<ColourBy>())]
+    pub colour_by: Option<ColourBy>,
     /// How carefully pictures are drawn
     #[arg(long, value_name = "QUALITY", value_parser = choice::<PictureQuality>(), default_value = "standard")]
     pub quality: PictureQuality,
@@ -60,19 +75,40 @@ pub struct RenderArguments {
     /// Factor on the camera's distance
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor)]
     pub distance: f32,
-    /// Factor by which the film is slower than the time between frames
+    /// TOML file with the path of the camera: sections [[keyframe]], as [[camera.keyframe]] of a scene
+    #[arg(long, value_name = "FILE")]
+    pub camera_path: Option<PathBuf>,
+    /// Slow motion: number of pictures per frame; below 1 the film plays faster
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor)]
     pub slow: f32,
+    /// How often the film shows the pictures
+    #[arg(long = "loop", value_name = "N", default_value_t = 1, value_parser = whole(1..=1000))]
+    pub repeat: u32,
 }
 
-fn frames(text: &str) -> Result<(u32, u32), String> {
+/// The frames to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameRange {
+    /// The first one.
+    pub first: u32,
+    /// The last one; `None`: the last of the run.
+    pub last: Option<u32>,
+}
+
+fn frames(text: &str) -> Result<FrameRange, String> {
     let number = |text: &str| text.parse::<u32>().ok();
     let range = match text.split_once("..") {
-        Some((first, last)) => number(first).zip(number(last)),
-        None => number(text).map(|frame| (frame, frame)),
+        Some(("", last)) => number(last).map(|last| FrameRange { first: 0, last: Some(last) }),
+        Some((first, "")) => number(first).map(|first| FrameRange { first, last: None }),
+        Some((first, last)) => {
+            number(first).zip(number(last)).map(|(first, last)| FrameRange { first, last: Some(last) })
+        }
+        None => number(text).map(|frame| FrameRange { first: frame, last: Some(frame) }),
     };
-    range.filter(|(first, last)| first <= last).ok_or_else(|| {
-        "frames are a number or two increasing numbers with two dots between them, such as 20..80".to_owned()
+    range.filter(|range| range.last.is_none_or(|last| range.first <= last)).ok_or_else(|| {
+        "frames are a number, or two increasing numbers with two dots between them, one of which may be left out, such as \
+         20..80 or 20.."
+            .to_owned()
     })
 }
 
@@ -101,9 +137,12 @@ mod tests {
 
     #[test]
     fn frames_are_a_number_or_an_increasing_range() {
-        assert_eq!(frames("7"), Ok((7, 7)));
-        assert_eq!(frames("20..80"), Ok((20, 80)));
-        for wrong in ["", "8..2", "a", "1..", "-1"] {
+        let range = |first, last| Ok(FrameRange { first, last });
+        assert_eq!(frames("7"), range(7, Some(7)));
+        assert_eq!(frames("20..80"), range(20, Some(80)));
+        assert_eq!(frames("3.."), range(3, None));
+        assert_eq!(frames("..3"), range(0, Some(3)));
+        for wrong in ["", "8..2", "a", "..", "1..b", "-1"] {
             assert!(frames(wrong).is_err(), "{wrong}");
         }
     }

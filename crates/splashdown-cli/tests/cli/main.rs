@@ -10,6 +10,7 @@ mod interrupted;
 mod meshes;
 mod place;
 mod plot;
+mod render;
 mod resume;
 mod runs;
 mod splashsurf;
