@@ -19,7 +19,7 @@ SERIES = {
 }
 DIFFUSE = ("spray", "foam", "bubbles")
 # Other formats of frames, which this extension does not read.
-OTHERS = ("obj", "stl", "vtk", "vtu", "glb", "npz", "bgeo")
+OTHERS = ("obj", "stl", "vtk", "vtu", "vtp", "glb", "npz", "bgeo")
 
 
 def listed(numbers):
@@ -192,7 +192,7 @@ class RunFolder:
 
     def _nothing(self):
         formats = sorted({ending for others in self._other.values() for ending in others.values()})
-        usd = sorted(path.name for path in self.path.glob("*.usda")) if self.path.is_dir() else []
+        usd = sorted(path.name for path in self.path.glob("*.usdc")) if self.path.is_dir() else []
         if not self.path.is_dir():
             reason = "it is not a folder"
         elif formats:
