@@ -5,7 +5,7 @@ use std::io::{Cursor, Read as _, Write as _};
 use std::path::Path;
 
 use anyhow::Result;
-use splashdown::scene::{Formula, Scene};
+use splashdown::scene::{CameraPath, Formula, Scene};
 use splashdown::{Checkpoint, Device, Run, RunOptions};
 use splashdown_io::{picture, read_mesh, read_particles, read_particles_with_attributes};
 use zip::write::SimpleFileOptions;
@@ -84,6 +84,7 @@ pub fn targets() -> Vec<Target> {
             || Ok(seeds::scenes()),
             |bytes, _| std::str::from_utf8(bytes).is_ok_and(|text| Scene::parse(text, "fuzz.toml").is_ok()),
         ),
+        of("camera-path", || Ok(vec![CAMERA_PATH.as_bytes().to_vec()]), |bytes, _| camera_path(bytes)),
         of("formula", formula_seeds, |bytes, _| {
             let formula = std::str::from_utf8(bytes).ok().and_then(|text| Formula::parse(text).ok());
             formula.is_some_and(|formula| !formula.at(0.5).to_string().is_empty())
@@ -104,6 +105,24 @@ pub fn targets() -> Vec<Target> {
 
 const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\nendloop\n\
                    endfacet\nendsolid a\n";
+
+const CAMERA_PATH: &str = "[[keyframe]]\ntime = 0\neye = [1, 0.5, 2]\ntarget = [0.1, 0, 0]\n[[keyframe]]\ntime = 0.5\n\
+                           azimuth = 90\n[[keyframe]]\ntime = 2\ndistance = 0.3\nelevation = -5\nfield_of_view = 60\n";
+
+/// Reads a camera path; the camera of a valid one has a place at all times.
+fn camera_path(bytes: &[u8]) -> bool {
+    let (Ok(text), Ok(mut scene)) = (std::str::from_utf8(bytes), Scene::parse(seeds::SMALL, "small.toml"))
+    else {
+        return false;
+    };
+    let Ok(path) = CameraPath::parse(text, "path.toml", &scene.camera) else { return false };
+    scene.camera_path = path;
+    for time in [0.0, 0.3, 0.5, 1.9, 1e4] {
+        let camera = scene.camera_at(time);
+        assert!(camera.eye(0.0).is_finite() && camera.distance > 0.0, "{camera:?} at {time} s");
+    }
+    true
+}
 
 fn particles(bytes: &[u8], folder: &Path, ending: &str) -> bool {
     let path = folder.join(format!("a{ending}"));

@@ -35,11 +35,12 @@ pub fn selected(
     let last = range.last.unwrap_or(high);
     let frames: Vec<u32> = all.into_iter().filter(|frame| (range.first..=last).contains(frame)).collect();
     if frames.is_empty() {
-        let message = format!(
-            "`{}` has nothing to draw of the frames {} to {last}; it has those of {low} to {high}",
-            arguments.run.display(),
-            range.first
-        );
+        let wanted = match range.last {
+            Some(last) => format!("the frames {} to {last}", range.first),
+            None => format!("frame {} and later ones", range.first),
+        };
+        let run = arguments.run.display();
+        let message = format!("`{run}` has nothing to draw of {wanted}; it has frames {low} to {high}");
         return Err(Failure::new(Exit::Usage, message));
     }
     let missing = u64::from(last - range.first) + 1 - frames.len() as u64;
