@@ -7,12 +7,13 @@
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::atomic;
 use crate::data::{Mesh, Particles};
 use crate::error::IoError;
-use crate::stage::{Channel, Pose, Sample, Spool, Stage, extent};
+use crate::stage::{Channel, Found, Pose, Sample, Shape, Signature, Spool, Stage, extent};
 use crate::{gltf, usd};
 
 /// The ending of the data file of a kept series, without its dot.
@@ -27,6 +28,7 @@ pub struct StageFile {
     /// The data file, if it is to outlive the process.
     part: Option<PathBuf>,
     spool: Mutex<Option<Spool>>,
+    has_failed: AtomicBool,
 }
 
 impl StageFile {
@@ -46,7 +48,8 @@ impl StageFile {
     }
 
     /// Continues the series of an earlier process after the frame `last`, from its kept data or from a complete file.
-    /// Later frames are removed. `None` if there is no series of the same objects that has this frame.
+    /// Later frames are removed. `None` if there is no series of the same objects that has this frame. Kept data of other objects is renamed to
+    /// `STEM.scenepart.old`.
     ///
     /// # Errors
     /// Those of [`StageFile::start`].
@@ -57,16 +60,38 @@ impl StageFile {
         last: u32,
     ) -> Result<Option<Self>, IoError> {
         let file = Self::new(paths, stage, keep)?;
-        let names = file.names();
-        let part = file.part.as_ref().filter(|part| part.is_file());
-        let continued = part.and_then(|part| Spool::continued(part, &names, last).ok().flatten());
-        let spool = match continued {
-            Some(spool) => Some(spool),
-            None => file.of_complete(&names, last).map_err(|error| file.failed(&error))?,
-        };
+        let spool = file.earlier(last).map_err(|error| file.failed(&error))?;
         let Some(spool) = spool else { return Ok(None) };
         *file.spool() = Some(spool);
         Ok(Some(file))
+    }
+
+    /// The data of an earlier process up to the frame `last`. Kept data of another scene is set aside, as `.old`.
+    fn earlier(&self, last: u32) -> io::Result<Option<Spool>> {
+        let text = self.signature();
+        let scene = Signature { text: &text, objects: self.stage.objects.len() };
+        if let Some(part) = self.part.as_ref().filter(|part| part.is_file()) {
+            if let Some(spool) = Spool::continued(part, scene, last)? {
+                return Ok(Some(spool));
+            }
+            fs::rename(part, part.with_extension(format!("{PART_ENDING}.old")))?;
+        }
+        // The data of both formats is the same, whichever is requested now.
+        let endings = ["usdc", "glb"].into_iter();
+        let paths = self
+            .paths
+            .first()
+            .into_iter()
+            .flat_map(|path| endings.clone().map(|ending| path.with_extension(ending)));
+        for path in paths {
+            let Some((mut file, start)) = data_of(&path)? else { continue };
+            let Some(found) = Found::scan(&mut file, start, scene, last)? else { continue };
+            let mut spool = self.new_spool()?;
+            spool.copy_from(&mut file, found)?;
+            spool.flush()?;
+            return Ok(Some(spool));
+        }
+        Ok(None)
     }
 
     fn new(paths: Vec<PathBuf>, stage: Stage, keep: Option<&Path>) -> Result<Self, IoError> {
@@ -75,41 +100,36 @@ impl StageFile {
         }
         let stem = paths.first().and_then(|path| path.file_stem()).unwrap_or_default().to_string_lossy();
         let part = keep.map(|folder| folder.join(format!("{stem}.{PART_ENDING}")));
-        Ok(Self { stage, paths, part, spool: Mutex::new(None) })
+        Ok(Self { stage, paths, part, spool: Mutex::new(None), has_failed: AtomicBool::new(false) })
     }
 
     fn create(&self) -> io::Result<Spool> {
-        let path = self.paths.first().map(PathBuf::as_path).unwrap_or(Path::new(""));
-        let mut spool = match &self.part {
-            Some(part) => Spool::kept(part)?,
-            None => Spool::temporary(path)?,
-        };
-        let names = self.names();
-        spool.append((0, Channel::Names), 0, names.len(), names.as_bytes())?;
+        let mut spool = self.new_spool()?;
+        let text = self.signature();
+        spool.append((0, Channel::Signature), 0, text.len(), text.as_bytes())?;
         Ok(spool)
     }
 
-    /// The data of the first complete file that has the frame.
-    fn of_complete(&self, names: &str, last: u32) -> io::Result<Option<Spool>> {
-        for path in &self.paths {
-            let Some((mut file, start)) = data_of(path)? else { continue };
-            let mut spool = match &self.part {
-                Some(part) => Spool::kept(part)?,
-                None => Spool::temporary(path)?,
-            };
-            if spool.copy_from(&mut file, start, names, last)? {
-                return Ok(Some(spool));
-            }
-            self.remove_part();
+    fn new_spool(&self) -> io::Result<Spool> {
+        match &self.part {
+            Some(part) => Spool::kept(part),
+            None => Spool::temporary(self.paths.first().map(PathBuf::as_path).unwrap_or(Path::new(""))),
         }
-        Ok(None)
     }
 
-    /// The names of the objects, by which data of the same objects is recognised.
-    fn names(&self) -> String {
-        let names: Vec<String> =
-            self.stage.objects.iter().map(|object| object.name.replace('\n', " ")).collect();
-        names.join("\n")
+    /// The frame rate and the kinds and names of the objects, by which data of the same scene is recognised.
+    fn signature(&self) -> String {
+        let mut text = format!("1 {}", self.stage.frames_per_second);
+        for object in &self.stage.objects {
+            let kind = match &object.shape {
+                Shape::Surface => "surface",
+                Shape::Points { .. } => "points",
+                Shape::Solid(_) => "solid",
+                Shape::Camera { .. } => "camera",
+            };
+            text.push_str(&format!("\n{kind} {}", object.name.replace('\n', " ")));
+        }
+        text
     }
 
     /// Appends a frame: the number of each object with its data. Frames must be appended in the order of their numbers.
@@ -121,10 +141,13 @@ impl StageFile {
             match sample {
                 Sample::Mesh(mesh) => mesh.check()?,
                 Sample::Points(particles) => particles.check()?,
-                Sample::Pose(_) => {}
+                Sample::Pose(_) | Sample::View { .. } => {}
             }
         }
         let mut state = self.spool();
+        if self.has_failed.load(Ordering::Relaxed) {
+            return Err(self.failed(&io::Error::other("an earlier frame could not be written")));
+        }
         let mut attempt = || {
             let spool = match &mut *state {
                 Some(spool) => spool,
@@ -136,7 +159,11 @@ impl StageFile {
             spool.append((0, Channel::End), frame, 0, &[])?;
             spool.flush()
         };
-        attempt().map_err(|error| self.failed(&error))
+        attempt().map_err(|error| {
+            // What was written of the frame is unknown, so no other can follow it.
+            self.has_failed.store(true, Ordering::Relaxed);
+            self.failed(&error)
+        })
     }
 
     /// Flushes kept data to the disk.
@@ -153,21 +180,27 @@ impl StageFile {
     /// Writes the files; returns the path and size in bytes of each. Without frames there are no files. A second call does
     /// nothing.
     ///
-    /// A `glb` file holds at most 4 GB. If the frames need more, it contains the first of them, and the error
-    /// [`IoError::TooLong`] says so.
+    /// A `glb` file holds at most 4 GB. If the frames need more, it contains the first of them, the error
+    /// [`IoError::TooLong`] says so, and all frames are written as `usdc`.
     pub fn finish(&self) -> Vec<Result<(PathBuf, u64), IoError>> {
         // The data is taken, so that a temporary file is removed even on failure. A kept one remains on failure.
-        let Some(mut spool) = self.spool().take().filter(|spool| spool.frames().is_some()) else {
+        let Some(spool) = self.spool().take().filter(|spool| spool.frames().is_some()) else {
             return Vec::new();
         };
-        let written: Vec<_> = self.paths.iter().map(|path| self.write(path, &mut spool)).collect();
+        let mut written: Vec<_> = self.paths.iter().map(|path| self.write(path, &spool)).collect();
+        let is_usd = |path: &PathBuf| Encoding::of(path) == Ok(Encoding::Usd);
+        if let Some(long) = written.iter().position(|file| matches!(file, Err(IoError::TooLong { .. })))
+            && !self.paths.iter().any(is_usd)
+        {
+            written.push(self.write(&self.paths[long].with_extension("usdc"), &spool));
+        }
         if written.iter().all(|file| file.is_ok() || matches!(file, Err(IoError::TooLong { .. }))) {
             self.remove_part();
         }
         written
     }
 
-    fn write(&self, path: &Path, spool: &mut Spool) -> Result<(PathBuf, u64), IoError> {
+    fn write(&self, path: &Path, spool: &Spool) -> Result<(PathBuf, u64), IoError> {
         let mut blocks = spool.blocks().map_err(|error| IoError::write(path, &error))?;
         let encoding = Encoding::of(path)?;
         let all = blocks.frames();
@@ -247,7 +280,7 @@ fn append(spool: &mut Spool, object: usize, frame: u32, sample: &Sample) -> io::
     match sample {
         Sample::Mesh(mesh) => {
             let Mesh { vertices, normals, velocities, triangles, .. } = &**mesh;
-            array(Channel::Extent, 2, bytemuck::cast_slice(&extent(vertices)))?;
+            array(Channel::Extent, extent_of(vertices).len(), bytemuck::cast_slice(&extent_of(vertices)))?;
             array(Channel::Positions, vertices.len(), bytemuck::cast_slice(vertices))?;
             array(Channel::Normals, normals.len(), bytemuck::cast_slice(normals))?;
             array(Channel::Velocities, velocities.len(), bytemuck::cast_slice(velocities))?;
@@ -256,17 +289,28 @@ fn append(spool: &mut Spool, object: usize, frame: u32, sample: &Sample) -> io::
         Sample::Points(particles) => {
             let Particles { ids, positions, velocities, densities, pressures, .. } = &**particles;
             let ids: Vec<i64> = ids.iter().copied().map(i64::from).collect();
-            array(Channel::Extent, 2, bytemuck::cast_slice(&extent(positions)))?;
+            array(Channel::Extent, extent_of(positions).len(), bytemuck::cast_slice(&extent_of(positions)))?;
             array(Channel::Positions, positions.len(), bytemuck::cast_slice(positions))?;
             array(Channel::Velocities, velocities.len(), bytemuck::cast_slice(velocities))?;
             array(Channel::Ids, ids.len(), bytemuck::cast_slice(&ids))?;
             array(Channel::Densities, densities.len(), bytemuck::cast_slice(densities))?;
             array(Channel::Pressures, pressures.len(), bytemuck::cast_slice(pressures))
         }
-        Sample::Pose(Pose { position: [x, y, z], orientation: [i, j, k, w] }) => {
-            array(Channel::Pose, 7, bytemuck::cast_slice(&[*x, *y, *z, *i, *j, *k, *w]))
+        Sample::Pose(pose) => array(Channel::Pose, 7, bytemuck::cast_slice(&numbers(*pose))),
+        Sample::View { pose, field_of_view, focus } => {
+            array(Channel::Pose, 7, bytemuck::cast_slice(&numbers(*pose)))?;
+            array(Channel::Lens, 2, bytemuck::cast_slice(&[*field_of_view, *focus]))
         }
     }
+}
+
+fn numbers(Pose { position: [x, y, z], orientation: [i, j, k, w] }: Pose) -> [f32; 7] {
+    [x, y, z, i, j, k, w]
+}
+
+/// The bounding box of points, which nothing has without points.
+fn extent_of(points: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    if points.is_empty() { Vec::new() } else { extent(points).to_vec() }
 }
 
 #[cfg(test)]
@@ -296,9 +340,6 @@ mod tests {
         drop(killed);
         assert!(folder.path().join("a.scenepart").exists());
         let resume = |name: &str, last| StageFile::resume(paths(name).to_vec(), stage.clone(), keep, last);
-        let other = Stage { objects: Vec::new(), ..stage.clone() };
-        assert!(StageFile::resume(paths("a").to_vec(), other, keep, 2)?.is_none(), "other objects");
-        assert!(resume("a", 4)?.is_none(), "a frame that is not there");
         for (number, last) in [(3, 2), (4, 3)] {
             let resumed = resume("a", last)?.unwrap();
             (number..5).try_for_each(|number| resumed.push(number, &frame(number)))?;
@@ -315,5 +356,60 @@ mod tests {
     fn other_endings_are_refused() {
         let started = StageFile::start(vec!["scene.usda".into()], Stage::of_surface(24.0), None);
         assert!(started.unwrap_err().to_string().contains(".usdc, .glb"));
+    }
+
+    /// Data that cannot be continued is kept under another name.
+    #[test]
+    fn data_of_another_scene_is_set_aside() -> Result<(), IoError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.usdc");
+        let keep = Some(folder.path());
+        let stage = Stage::of_surface(24.0);
+        let killed = StageFile::start(vec![path.clone()], stage.clone(), keep)?;
+        (3..5).try_for_each(|number| killed.push(number, &frame(number)))?;
+        drop(killed);
+        let [part, old] = ["a.scenepart", "a.scenepart.old"].map(|name| folder.path().join(name));
+        let bytes = fs::read(&part).unwrap();
+        let faster = Stage { frames_per_second: 25.0, ..stage.clone() };
+        assert!(StageFile::resume(vec![path.clone()], faster, keep, 4)?.is_none());
+        assert!(!part.exists() && fs::read(&old).unwrap() == bytes);
+        fs::rename(&old, &part).unwrap();
+        let resumed = StageFile::resume(vec![path.clone()], stage, keep, 4)?.unwrap();
+        assert!(resumed.finish()[0].is_ok() && path.exists() && !part.exists());
+        Ok(())
+    }
+
+    /// Points appear in the second frame, and a body moves.
+    #[test]
+    fn scenes_with_empty_frames_are_written() -> Result<(), IoError> {
+        let folder = tempfile::tempdir().unwrap();
+        let paths = ["usdc", "glb"].map(|ending| folder.path().join(format!("scene.{ending}")));
+        let mut stage = Stage::of_particles(24.0, 0.1);
+        let (_, sample) = &frame(1)[0];
+        let Sample::Mesh(mesh) = sample else { panic!("no mesh") };
+        let body = crate::stage::Object { shape: Shape::Solid(Arc::clone(mesh)), ..stage.objects[0].clone() };
+        stage.objects.push(body);
+        let file = StageFile::start(paths.to_vec(), stage, None)?;
+        for number in 7..10 {
+            let points = if number == 7 { Vec::new() } else { vec![[number as f32, 0.0, 0.0]] };
+            let points = Sample::Points(Arc::new(Particles::from_positions(points)));
+            let pose = Pose { position: [0.0, number as f32, 0.0], ..Pose::IDENTITY };
+            file.push(number, &[(0, points), (1, Sample::Pose(pose))])?;
+        }
+        assert!(file.finish().iter().all(Result::is_ok));
+        let bytes = fs::read(&paths[1]).unwrap();
+        let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+        let scene: serde_json::Value = serde_json::from_slice(&bytes[20..20 + length]).unwrap();
+        let names: Vec<&str> =
+            scene["nodes"].as_array().unwrap().iter().flat_map(|node| node["name"].as_str()).collect();
+        assert_eq!(names, ["particles_0008", "particles_0009", "particles", "splashdown"]);
+        let input = |channel: usize| {
+            let sampler = &scene["animations"][0]["samplers"][channel];
+            scene["accessors"][sampler["input"].as_u64().unwrap() as usize].clone()
+        };
+        // The frame 8 is shown from 1/24 s to 2/24 s, and the body moves during all three frames.
+        assert_eq!((input(0)["count"].as_u64(), input(2)["count"].as_u64()), (Some(3), Some(3)));
+        assert_eq!((input(0)["min"][0].as_f64(), input(2)["min"][0].as_f64()), (Some(0.0), Some(0.0)));
+        Ok(())
     }
 }

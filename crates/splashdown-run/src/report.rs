@@ -1,7 +1,7 @@
 //! `run.json`: the summary of a run in its output folder, for other programs and for later reference.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::Path;
 
 use serde::Serialize;
 use splashdown::Stats;
@@ -25,8 +25,9 @@ pub(crate) struct Report {
     pub scene: String,
     /// The scene's file as it was given; null for a built-in scene.
     pub file: Option<String>,
-    /// The absolute path of that file, from whose folder the scene names its meshes and other files.
-    pub scene_path: Option<PathBuf>,
+    /// The absolute path of that file, from whose folder the scene names its meshes and other files; null if it is not
+    /// UTF-8.
+    pub scene_path: Option<String>,
     /// The text of the scene. With it a folder can be drawn and played after the scene file has changed.
     pub scene_text: String,
     /// The settings that changed the scene.
@@ -110,6 +111,12 @@ pub struct PassNumbers {
     seconds: f64,
 }
 
+/// An unknown working directory leaves the path as it was given.
+fn absolute(path: &Path) -> Option<String> {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    path.into_os_string().into_string().ok()
+}
+
 impl Report {
     /// The report of a run that starts.
     pub fn new(scene: &Scene, settings: &RunSettings) -> Self {
@@ -118,8 +125,7 @@ impl Report {
             version: env!("CARGO_PKG_VERSION"),
             scene: scene.name.clone(),
             file: scene.source.as_ref().map(|path| path.display().to_string()),
-            // An unknown working directory leaves the path as it was given.
-            scene_path: scene.source.clone().map(|path| std::path::absolute(&path).unwrap_or(path)),
+            scene_path: scene.source.as_deref().and_then(absolute),
             scene_text: scene.text.to_string(),
             settings: Notes::new(settings),
             particle_spacing: scene.fluid.particle_spacing,
@@ -206,4 +212,19 @@ pub fn pass_numbers(timings: &Timings) -> BTreeMap<&'static str, PassNumbers> {
         seconds: time.total.as_secs_f64(),
     };
     timings.passes.iter().map(|(&label, time)| (label, numbers(time))).collect()
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::absolute;
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    use std::path::Path;
+
+    /// JSON has no other texts; such a path must not make the report, and with it the run, fail.
+    #[test]
+    fn paths_that_are_not_utf_8_are_left_out() {
+        assert_eq!(absolute(Path::new("/a/b.toml")).as_deref(), Some("/a/b.toml"));
+        assert_eq!(absolute(Path::new(OsStr::from_bytes(b"/a/\xff.toml"))), None);
+    }
 }

@@ -101,6 +101,27 @@ fn a_killed_run_continues_its_scene_files() -> Outcome {
     Ok(())
 }
 
+/// Without the surface the scene has other objects, so that its files cannot be continued.
+#[test]
+fn scene_data_that_cannot_be_continued_is_kept() -> Outcome {
+    let place = Place::new()?;
+    scene_files(&place)?;
+    let mut run = start(&place, &["--frames", "12", "--checkpoint-every", "2"])?;
+    wait_for(&place.path("out/checkpoints/checkpoint_0004.splashdown"));
+    run.kill()?;
+    run.wait()?;
+    let output = place.splashdown(&["run", "--resume", "out", "--no-surface"]).output()?;
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(place.path("out/checkpoints/scene.scenepart.old").exists());
+    assert!(
+        names(&place.path("out"))?.iter().any(|name| name.starts_with("scene_00") && name.ends_with(".usdc"))
+    );
+    // Nothing is left to do.
+    let output = place.splashdown(&["run", "--resume", "out"]).output()?;
+    assert_refused(&output, 2, &["frame 12 is already complete"]);
+    Ok(())
+}
+
 #[test]
 fn a_run_without_its_scene_file_is_finished() -> Outcome {
     let place = Place::new()?;

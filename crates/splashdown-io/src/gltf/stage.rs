@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::write::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, POINTS, TRIANGLES, UNSIGNED_INT, write_file};
 use crate::data::Mesh;
-use crate::stage::{Blocks, Channel, Material, Object, Pose, Shape, Stage, Up, extent, identifiers};
+use crate::stage::{Blocks, Channel, Material, Object, Pose, Shape, Stage, Up, extent};
 
 /// Largest size of the frames in bytes. The lengths in the file have 32 bits; the rest is for the description.
 pub(crate) const LARGEST: u64 = u32::MAX as u64 - (256 << 20);
@@ -17,9 +17,8 @@ pub(crate) const LARGEST: u64 = u32::MAX as u64 - (256 << 20);
 /// Writes a scene with its frames, which have at most [`LARGEST`] bytes.
 pub(crate) fn write_stage(out: &mut dyn Write, stage: &Stage, blocks: &Blocks) -> io::Result<()> {
     let mut document = Document::new(stage, blocks);
-    let names = identifiers(stage.objects.iter().map(|object| object.name.as_str()));
-    for (number, (object, name)) in stage.objects.iter().zip(&names).enumerate() {
-        document.add(number, object, name)?;
+    for (number, object) in stage.objects.iter().enumerate() {
+        document.add(number, object, &object.name)?;
     }
     let bytes = blocks.bytes() as usize + document.more.len();
     let (json, more) = document.finish();
@@ -303,6 +302,7 @@ impl<'a> Document<'a> {
         }
         self.nodes.push(root);
         let bytes = self.blocks.bytes() + self.more.len() as u64;
+        let top = self.nodes.len() - 1;
         let mut document = json!({
             "asset": {
                 "version": "2.0",
@@ -311,17 +311,20 @@ impl<'a> Document<'a> {
             },
             "extensionsUsed": ["KHR_materials_ior", "KHR_materials_transmission", "KHR_materials_volume"],
             "scene": 0,
-            "scenes": [{ "nodes": [self.nodes.len() - 1] }],
-            "nodes": self.nodes,
+            "scenes": [{ "nodes": [top] }],
             "buffers": [{ "byteLength": bytes }],
         });
         let materials = self.stage.materials.iter().map(|(name, material)| described(name, material));
         let animations = if self.channels.is_empty() {
             Vec::new()
         } else {
-            vec![json!({ "name": "frames", "channels": self.channels, "samplers": self.samplers })]
+            let mut frames = json!({ "name": "frames" });
+            frames["channels"] = Value::Array(self.channels);
+            frames["samplers"] = Value::Array(self.samplers);
+            vec![frames]
         };
         let lists = [
+            ("nodes", self.nodes),
             ("materials", materials.collect()),
             ("meshes", self.meshes),
             ("cameras", self.cameras),

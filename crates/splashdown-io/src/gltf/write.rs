@@ -199,8 +199,12 @@ pub(super) fn write_file(
     // The size of a chunk is a multiple of four; spaces may follow the JSON.
     json.resize(json.len().next_multiple_of(4), b' ');
     let total = 12 + 8 + json.len() + if bytes > 0 { 8 + bytes } else { 0 };
+    let Ok(total) = u32::try_from(total) else {
+        let reason = format!("{total} bytes are too many for a GLB file, which has at most 4 GB");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, reason));
+    };
     out.write_all(b"glTF")?;
-    for word in [2, total as u32, json.len() as u32] {
+    for word in [2, total, json.len() as u32] {
         out.write_all(&word.to_le_bytes())?;
     }
     out.write_all(b"JSON")?;

@@ -7,7 +7,7 @@ mod spool;
 
 use std::sync::Arc;
 
-pub(crate) use spool::{Blocks, Channel, Spool};
+pub(crate) use spool::{Blocks, Channel, Found, Signature, Spool};
 
 use crate::data::{Mesh, Particles};
 
@@ -61,7 +61,7 @@ pub struct Object {
     pub name: String,
     /// What it is.
     pub shape: Shape,
-    /// Its place where its frames have no [`Sample::Pose`].
+    /// Its place where its frames have no place of their own.
     pub pose: Pose,
     /// Number of its material in [`Stage::materials`].
     pub material: Option<usize>,
@@ -160,6 +160,15 @@ pub enum Sample {
     Points(Arc<Particles>),
     /// The place of a body or camera.
     Pose(Pose),
+    /// The place of a camera, and its lens.
+    View {
+        /// The place.
+        pose: Pose,
+        /// Vertical angle of view in degrees.
+        field_of_view: f32,
+        /// Distance of sharp things in m.
+        focus: f32,
+    },
 }
 
 /// How the axes of a scene are turned so that a file has its up direction along one of its axes.

@@ -41,6 +41,14 @@ pub(super) fn integers(values: &[i32]) -> Vec<u8> {
     [commonest.to_le_bytes().to_vec(), sizes, rest].concat()
 }
 
+/// [`integers`] of a value from 1 to 127 that is repeated: one difference of a byte, followed by differences of zero.
+pub(super) fn repeated(value: i8, count: usize) -> Vec<u8> {
+    let mut bytes = vec![0; 4 + count.div_ceil(4) + 1];
+    bytes[4] = 1;
+    bytes[4 + count.div_ceil(4)] = value.cast_unsigned();
+    bytes
+}
+
 /// Compresses bytes as one LZ4 block, preceded by its size and by the number of further blocks, which is zero.
 pub(super) fn compressed(bytes: &[u8]) -> Vec<u8> {
     let block = lz4_flex::block::compress(bytes);
@@ -50,7 +58,7 @@ pub(super) fn compressed(bytes: &[u8]) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::integers;
+    use super::{integers, repeated};
 
     /// The example in Pixar's `integerCoding.cpp`.
     #[test]
@@ -58,5 +66,12 @@ mod tests {
         let encoded = integers(&[123, 124, 125, 100_125, 100_125, 100_126, 100_126]);
         let expected: &[u8] = &[1, 0, 0, 0, 0b1100_0001, 0b01_00_01, 123, 0xa0, 0x86, 1, 0, 0, 0];
         assert_eq!(encoded, expected);
+    }
+
+    #[test]
+    fn repeated_integers_are_encoded_alike() {
+        for count in [3, 16, 17, 100] {
+            assert_eq!(repeated(3, count), integers(&vec![3; count]), "{count}");
+        }
     }
 }

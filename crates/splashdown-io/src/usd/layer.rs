@@ -149,6 +149,11 @@ impl Layer {
                 Rep::array(Type::Vec3f, self.store_list(list.len(), bytemuck::cast_slice(&list)))
             }
             Value::Integers(list) => self.integers(&list),
+            Value::Threes(count) if count < coding::SHORTEST => self.integers(&vec![3; count]),
+            Value::Threes(count) => {
+                let bytes = coding::compressed(&coding::repeated(3, count));
+                Rep::compressed(Type::Int, self.store_list(count, &bytes))
+            }
             Value::Tokens(list) => Rep::array(Type::Token, self.store_tokens(&list)),
             Value::Names(list) => Rep::at(Type::TokenVector, self.store_tokens(&list)),
             Value::Prepended(list) => {

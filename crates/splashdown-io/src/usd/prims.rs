@@ -129,10 +129,12 @@ impl Added<'_> {
             self.constant("primvars:displayColor", "color3f[]", Value::Vectors(vec![colour]));
         }
         match &self.object.shape {
-            Shape::Surface => self.surface(),
+            Shape::Surface => self.surface()?,
             Shape::Solid(mesh) => self.solid(mesh),
-            Shape::Points { diameter } => self.points(*diameter),
-            Shape::Camera { field_of_view, aspect, focus } => self.camera(*field_of_view, *aspect, *focus),
+            Shape::Points { diameter } => self.points(*diameter)?,
+            Shape::Camera { field_of_view, aspect, focus } => {
+                self.camera([*field_of_view, *focus], *aspect)?
+            }
         }
         self.pose()
     }
@@ -150,8 +152,8 @@ impl Added<'_> {
 
     /// The arrays of all frames as an attribute, unless no frame has any. Frames without one have an empty array.
     fn sampled(&mut self, name: &str, kind: &str, channel: Channel, element: Type) {
-        let values: Vec<(u32, u64)> =
-            self.blocks.of(self.number, channel).map(|block| (block.frame, block.offset)).collect();
+        let blocks = self.blocks.of(self.number, channel).iter();
+        let values: Vec<(u32, u64)> = blocks.map(|block| (block.frame, block.offset)).collect();
         if values.is_empty() {
             return;
         }
@@ -183,20 +185,37 @@ impl Added<'_> {
             .collect()
     }
 
-    fn surface(&mut self) {
+    /// The bounding box in every frame, wider by a margin in m. That of nothing is turned inside out.
+    fn extents(&mut self, margin: f32) -> io::Result<()> {
+        let mut boxes = Vec::new();
+        for block in self.blocks.of(self.number, Channel::Extent) {
+            let [a, b, c, d, e, f] = self.blocks.floats(block)?;
+            let low = [a, b, c].map(|bound| bound - margin);
+            boxes.push((block.frame, [low, [d, e, f].map(|bound| bound + margin)]));
+        }
+        let samples = self.each_frame(&boxes, |layer, bounds| {
+            layer.rep(Value::Vectors(bounds.unwrap_or([[f32::MAX; 3], [f32::MIN; 3]]).to_vec()))
+        });
+        let path = format!("{}.extent", self.path);
+        attribute(self.layer, &path, "float3[]", vec![("timeSamples", Value::Samples(samples))]);
+        Ok(())
+    }
+
+    fn surface(&mut self) -> io::Result<()> {
         self.mesh_kind();
-        let corners: Vec<(u32, u64)> =
-            self.blocks.of(self.number, Channel::Corners).map(|block| (block.frame, block.count)).collect();
+        let blocks = self.blocks.of(self.number, Channel::Corners).iter();
+        let corners: Vec<(u32, u64)> = blocks.map(|block| (block.frame, block.count)).collect();
         let counts = self.each_frame(&corners, |layer, corners| {
-            layer.rep(Value::repeated(3, corners.unwrap_or(0) as usize / 3))
+            layer.rep(Value::Threes(corners.unwrap_or(0) as usize / 3))
         });
         let path = format!("{}.faceVertexCounts", self.path);
         attribute(self.layer, &path, "int[]", vec![("timeSamples", Value::Samples(counts))]);
-        self.sampled("extent", "float3[]", Channel::Extent, Type::Vec3f);
+        self.extents(0.0)?;
         self.sampled("faceVertexIndices", "int[]", Channel::Corners, Type::Int);
         self.sampled("points", "point3f[]", Channel::Positions, Type::Vec3f);
         self.sampled("normals", "normal3f[]", Channel::Normals, Type::Vec3f);
         self.sampled("velocities", "vector3f[]", Channel::Velocities, Type::Vec3f);
+        Ok(())
     }
 
     fn mesh_kind(&mut self) {
@@ -209,7 +228,7 @@ impl Added<'_> {
         self.mesh_kind();
         let corners = mesh.triangles.as_flattened().iter().map(|&vertex| vertex as i32).collect();
         self.set("extent", "float3[]", Value::Vectors(extent(&mesh.vertices).to_vec()));
-        self.set("faceVertexCounts", "int[]", Value::repeated(3, mesh.len()));
+        self.set("faceVertexCounts", "int[]", Value::Threes(mesh.len()));
         self.set("faceVertexIndices", "int[]", Value::Integers(corners));
         self.set("points", "point3f[]", Value::Vectors(mesh.vertices.clone()));
         if self.material_is_thin() {
@@ -222,24 +241,41 @@ impl Added<'_> {
         matches!(&self.object.shape, Shape::Solid(mesh) if mesh.topology().is_ok_and(|mesh| !mesh.is_watertight()))
     }
 
-    fn points(&mut self, diameter: f32) {
+    fn points(&mut self, diameter: f32) -> io::Result<()> {
         self.constant("widths", "float[]", Value::Floats(vec![diameter]));
-        self.sampled("extent", "float3[]", Channel::Extent, Type::Vec3f);
+        self.extents(0.5 * diameter)?;
         self.sampled("points", "point3f[]", Channel::Positions, Type::Vec3f);
         self.sampled("velocities", "vector3f[]", Channel::Velocities, Type::Vec3f);
         self.sampled("ids", "int64[]", Channel::Ids, Type::Int64);
         self.sampled("primvars:density", "float[]", Channel::Densities, Type::Float);
         self.sampled("primvars:pressure", "float[]", Channel::Pressures, Type::Float);
+        Ok(())
     }
 
     /// The focal length and the film are in tenths of a scene unit.
-    fn camera(&mut self, field_of_view: f32, aspect: f32, focus: f32) {
-        let focal_length = 0.5 * APERTURE / (0.5 * field_of_view.to_radians()).tan();
-        self.set("focalLength", "float", Value::Float(focal_length));
+    fn camera(&mut self, lens: [f32; 2], aspect: f32) -> io::Result<()> {
+        let mut lenses = Vec::new();
+        for block in self.blocks.of(self.number, Channel::Lens) {
+            lenses.push((block.frame, self.blocks.floats(block)?));
+        }
+        type Part = fn([f32; 2]) -> f32;
+        let parts: [(&str, Part); 2] = [("focalLength", focal_length), ("focusDistance", |[_, focus]| focus)];
+        for (name, part) in parts {
+            if lenses.iter().all(|(_, other)| *other == lens) {
+                self.set(name, "float", Value::Float(part(lens)));
+                continue;
+            }
+            let samples = self.each_frame(&lenses, |layer, own: Option<[f32; 2]>| {
+                layer.rep(Value::Float(part(own.unwrap_or(lens))))
+            });
+            let path = format!("{}.{name}", self.path);
+            attribute(self.layer, &path, "float", vec![("timeSamples", Value::Samples(samples))]);
+        }
+        let [_, focus] = lens;
         self.set("verticalAperture", "float", Value::Float(APERTURE));
         self.set("horizontalAperture", "float", Value::Float(APERTURE * aspect));
-        self.set("focusDistance", "float", Value::Float(focus));
         self.set("clippingRange", "float2", Value::Float2([0.001 * focus, 1000.0 * focus]));
+        Ok(())
     }
 
     /// The place of the object, in every frame if it moves.
@@ -267,4 +303,9 @@ impl Added<'_> {
 
 fn binding_schema() -> Value {
     Value::Prepended(vec!["MaterialBindingAPI".to_owned()])
+}
+
+/// The focal length for an angle of view.
+fn focal_length([field_of_view, _]: [f32; 2]) -> f32 {
+    0.5 * APERTURE / (0.5 * field_of_view.to_radians()).tan()
 }

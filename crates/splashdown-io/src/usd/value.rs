@@ -17,6 +17,8 @@ pub(super) enum Value {
     Floats(Vec<f32>),
     Vectors(Vec<[f32; 3]>),
     Integers(Vec<i32>),
+    /// The number 3, this often.
+    Threes(usize),
     /// An array of the type `token[]`.
     Tokens(Vec<String>),
     /// A list of names, in the fields of the format itself.
@@ -37,11 +39,6 @@ impl Value {
 
     pub(super) fn token(word: &str) -> Self {
         Self::Token(word.to_owned())
-    }
-
-    /// Integers that are the same.
-    pub(super) fn repeated(value: i32, count: usize) -> Self {
-        Self::Integers(vec![value; count])
     }
 }
 

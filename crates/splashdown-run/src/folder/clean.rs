@@ -32,6 +32,9 @@ impl RunFolder {
                 let _ = fs::remove_file(path);
             }
         }
+        for (_, path) in self.numbered_parts().filter(|(first, _)| *first > frame) {
+            let _ = fs::remove_file(path);
+        }
     }
 
     /// The existing files of the frames up to this one. Films, tables, index and report are not included.

@@ -118,14 +118,19 @@ impl RunFolder {
     /// the file with all frames.
     pub(crate) fn animated_at(&self, stem: &str, last: u32) -> Option<u32> {
         let files = numbered::ANIMATED.files(&self.root);
-        let parts = self.scene_parts().into_iter().filter_map(|path| {
-            // The data of `scene_0006.usdc` is `scene_0006.scenepart`.
+        let own = files
+            .chain(self.numbered_parts())
+            .filter(|(first, path)| *first <= last && file_name(path).starts_with(stem));
+        own.map(|(first, _)| first).max()
+    }
+
+    /// The data of files that do not begin with the first frame, with the number of their first frame: that of
+    /// `scene_0006.usdc` is `scene_0006.scenepart`.
+    pub(crate) fn numbered_parts(&self) -> impl Iterator<Item = (u32, PathBuf)> {
+        self.scene_parts().into_iter().filter_map(|path| {
             let number = path.file_stem()?.to_str()?.rsplit_once('_')?.1.parse().ok()?;
             Some((number, path))
-        });
-        let own =
-            files.chain(parts).filter(|(first, path)| *first <= last && file_name(path).starts_with(stem));
-        own.map(|(first, _)| first).max()
+        })
     }
 
     /// The data of files with all frames that are not complete yet.
@@ -133,6 +138,16 @@ impl RunFolder {
         let entries = fs::read_dir(self.checkpoint_folder()).into_iter().flatten().flatten();
         let files = entries.map(|entry| entry.path());
         files.filter(|path| path.extension().is_some_and(|ending| ending == PART_ENDING)).collect()
+    }
+
+    /// Renames such data of a file that the run does not write any more, as [`StageFile::resume`] does.
+    ///
+    /// [`StageFile::resume`]: splashdown_io::StageFile::resume
+    pub(crate) fn set_aside(&self, stem: &str) {
+        for part in self.scene_parts().into_iter().filter(|path| file_name(path).starts_with(stem)) {
+            // Data that cannot be renamed is left as it is.
+            let _ = fs::rename(&part, part.with_extension(format!("{PART_ENDING}.old")));
+        }
     }
 
     /// Whether there is such data of this file.

@@ -44,14 +44,18 @@ impl Animated {
         for (stem, layout) in
             [(SCENE_FILE, Layout::scene(scene, bodies)), (PARTICLES_STEM, Layout::particles(scene))]
         {
-            let Some(layout) = layout else { continue };
+            let Some(layout) = layout else {
+                folder.set_aside(stem);
+                continue;
+            };
             let formats: Vec<Format> = match (grows, stem) {
                 (true, SCENE_FILE) => requested.iter().filter(|format| format.has_scene()).copied().collect(),
                 (true, _) => requested.iter().filter(|&&format| format == Format::Usd).copied().collect(),
-                // Without new frames only data that is not yet in a complete file is of interest.
-                (false, _) if folder.has_scene_part(stem) => vec![Format::Usd],
                 (false, _) => Vec::new(),
             };
+            // Data that is not yet in a complete file is completed, whatever is requested.
+            let is_left = formats.is_empty() && folder.has_scene_part(stem);
+            let formats = if is_left { vec![Format::Usd] } else { formats };
             if formats.is_empty() {
                 continue;
             }

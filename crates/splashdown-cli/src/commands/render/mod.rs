@@ -28,7 +28,7 @@ pub fn run(arguments: &RenderArguments) -> Result<Exit, Failure> {
     }
     let mut problems = Problems::default();
     let frames = options::selected(arguments, &finished, &mut problems)?;
-    problems.extend(finished.problems(|frame| frames.contains(&frame)));
+    problems.extend(finished.problems(|frame| frames.binary_search(&frame).is_ok()));
     problems.extend(appearance::caption_problem(&scene));
     let moments = moments(&frames, arguments.slow);
     let name = arguments.out.clone().unwrap_or_else(|| arguments.run.join("render"));

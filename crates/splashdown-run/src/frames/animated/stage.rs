@@ -70,15 +70,16 @@ impl Layout {
                 layout.add(name, shape, Some(FOAM), Source::Points(name));
             }
         }
-        for (number, body) in bodies.iter().enumerate() {
-            layout.add_body(number, body);
-        }
         if scene.picture.tank != TankKind::None
             && let Some(tank) = tank(scene)
         {
             layout.add("tank", Shape::Solid(Arc::new(tank)), Some(PANES), Source::Constant);
         }
         layout.add_camera();
+        // Last, so that a body of one of these names gets another one.
+        for (number, body) in bodies.iter().enumerate() {
+            layout.add_body(number, body);
+        }
         Some(layout)
     }
 
@@ -143,7 +144,11 @@ impl Layout {
                 Some(Sample::Points(Arc::clone(particles)))
             }
             Source::Body(number) => frame.bodies.get(*number).map(|state| Sample::Pose(pose_of(state))),
-            Source::Camera => Some(Sample::Pose(view(&appearance::camera(&self.scene, frame.time)))),
+            Source::Camera => {
+                let camera = appearance::camera(&self.scene, frame.time);
+                let field_of_view = camera.field_of_view_deg;
+                Some(Sample::View { pose: view(&camera), field_of_view, focus: distance(&camera) })
+            }
             Source::Constant => None,
         };
         let samples = self.sources.iter().enumerate();
