@@ -149,7 +149,8 @@ mod tests {
         assert_eq!(folder.remove_earlier(), 0);
         assert!(frame.exists());
         fs::write(folder.report(), "{}")?;
-        assert_eq!(folder.remove_earlier(), 5);
+        // Frame, index, two tables, mesh of the body, report.
+        assert_eq!(folder.remove_earlier(), 6);
         assert!(
             !frame.exists()
                 && !index.exists()

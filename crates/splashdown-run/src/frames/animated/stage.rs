@@ -214,7 +214,7 @@ mod tests {
 
     fn scene(more: &str) -> Scene {
         let text = format!(
-            "[domain]\nmin = [0, 0, 0]\nmax = [1, 2, 3]\nopen = [\"y_max\"]\n{more}\n[fluid]\nparticle_spacing = 0.1\n\
+            "[scene]\nname = \"test\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 2, 3]\nopen = [\"y_max\"]\n{more}\n[fluid]\nparticle_spacing = 0.1\n\
              [[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n"
         );
         Scene::parse(&text, "test").unwrap_or_else(|errors| panic!("{errors}"))
