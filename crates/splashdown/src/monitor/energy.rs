@@ -98,6 +98,8 @@ pub(super) struct EnergyAccount {
     sources: Vec<Source>,
     /// Kinetic energy per mass that always counts as available, in m^2/s^2.
     least: f64,
+    /// That of the surface in J/kg.
+    surface_energy: f64,
     /// Total energy at the start, and its part without compression, in J.
     start: Option<[f64; 2]>,
     balance: EnergyBalance,
@@ -138,11 +140,17 @@ impl EnergyAccount {
             sources: scene.emitters.iter().map(source).collect(),
             least: 0.5 * (0.05 * reference_speed).max(noticeable_speed(scene, reference_speed)).powi(2)
                 + surface_energy(scene),
+            surface_energy: surface_energy(scene),
             start: None,
             balance: EnergyBalance::default(),
             before: None,
             params: *params,
         }
+    }
+
+    /// Before the first frame: the reference speed in m/s without outliers.
+    pub fn set_reference_speed(&mut self, speed: f64) {
+        self.least = self.least.min(0.5 * (0.05 * speed).powi(2) + self.surface_energy);
     }
 
     pub fn save(&self) -> SavedEnergy {

@@ -7,13 +7,15 @@
 //! in every step (the work of bodies) is summed by a pass that has the numbers anyway.
 //!
 //! *The largest speed that energy allows* is `sqrt(v0^2 + 2 g h + (2 u)^2)` plus the speed of shaking. v0 is the largest
-//! initial speed of fluid and the largest speed of emitters, h the height of the fluid above the lowest corner (of the
-//! whole domain with dynamic bodies, more with surface tension and adhesion), and u the speed of the fastest point of scripted bodies so far and of dynamic bodies
-//! at the start; a wall that moves at u reflects fluid at 2 u.
+//! initial speed of fluid, apart from [single fast particles](outliers), and the largest speed of emitters, h the height of the fluid above the lowest corner (of the
+//! whole domain with dynamic bodies, more with surface tension and adhesion), and u the speed of the fastest point of scripted bodies that came near the fluid so far and of dynamic bodies
+//! at the start; a wall that moves at u reflects fluid at 2 u. A jump does not count as a speed: it would allow any.
 
 mod density;
 mod energy;
 mod levels;
+mod outliers;
+mod scripted;
 #[cfg(test)]
 mod tests;
 mod words;
@@ -27,6 +29,8 @@ use serde::{Deserialize, Serialize};
 use splashdown_io::Particles;
 
 use self::energy::{EnergyAccount, SavedEnergy};
+use self::outliers::Outliers;
+use self::scripted::ScriptedBodies;
 use self::words::{Context, Rise};
 use crate::scene::{Derived, Motion, Scene};
 use crate::state::Params;
@@ -90,8 +94,10 @@ pub struct Monitor {
     account: EnergyAccount,
     /// Reference speed in m/s, without moving bodies.
     reference_speed: f64,
-    /// For each scripted body, the largest distance in m of its points from its origin; `None` for others.
-    reaches: Vec<Option<f32>>,
+    /// The same without the initial speeds of the fluid.
+    driven_speed: f64,
+    outliers: Outliers,
+    scripted: ScriptedBodies,
     /// The largest speed of a scripted body so far, and of dynamic bodies at the start, in m/s.
     body_speed: f64,
     before: Counted,
@@ -111,6 +117,8 @@ struct Counted {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SavedMonitor {
     energy: SavedEnergy,
+    reference_speed: f64,
+    outliers: Outliers,
     body_speed: f64,
     before: Counted,
     reported: Vec<(Level, f64)>,
@@ -142,17 +150,21 @@ impl Monitor {
         let fall = scene.gravity.length() * derived.head;
         let shaking = scene.domain.oscillation.map_or(0.0, |oscillation| oscillation.max_speed());
         let initial = ((derived.reference_speed - shaking).powi(2) - 4.0 * fall).max(0.0);
+        let emitted = scene.emitters.iter().map(|emitter| emitter.speed).fold(0.0, f32::max);
         let attraction = 4.0 * energy::surface_energy(scene);
-        let reference_speed =
-            (f64::from(initial + 2.0 * fall.max(whole)) + attraction).sqrt() + f64::from(shaking);
         let noticeable = energy::noticeable_speed(scene, derived.reference_speed.into());
-        let reference_speed = reference_speed.max(noticeable);
+        let with = |initial: f32| {
+            let square = f64::from(initial + 2.0 * fall.max(whole)) + attraction;
+            (square.sqrt() + f64::from(shaking)).max(noticeable)
+        };
         Self {
             params: *params,
             context: Context::new(scene, params.sound_speed, derived.reference_speed),
             account: EnergyAccount::new(scene, params, derived.reference_speed.into()),
-            reference_speed,
-            reaches: reaches.collect(),
+            reference_speed: with(initial),
+            driven_speed: with(initial.min(emitted * emitted)),
+            outliers: Outliers::default(),
+            scripted: ScriptedBodies::new(reaches.collect(), params.support_radius),
             body_speed,
             before: Counted::default(),
             reported: vec![(Level::Sound, 0.0); Watched::ALL.len()],
@@ -167,9 +179,11 @@ impl Monitor {
 
     /// The state for a checkpoint.
     pub(crate) fn save(&self) -> SavedMonitor {
-        let Self { body_speed, before, level, .. } = *self;
+        let Self { reference_speed, body_speed, before, level, .. } = *self;
         SavedMonitor {
             energy: self.account.save(),
+            reference_speed,
+            outliers: self.outliers.clone(),
             body_speed,
             before,
             reported: self.reported.clone(),
@@ -186,6 +200,8 @@ impl Monitor {
         bodies: &[BodyState],
     ) {
         self.account.restore(saved.energy, time, particles, work(bodies));
+        self.scripted.begin(time, bodies);
+        (self.reference_speed, self.outliers) = (saved.reference_speed, saved.outliers);
         (self.body_speed, self.before, self.level) = (saved.body_speed, saved.before, saved.level);
         for (own, saved) in self.reported.iter_mut().zip(saved.reported) {
             *own = saved;
@@ -195,20 +211,19 @@ impl Monitor {
     /// Examines the next frame.
     pub fn observe(&mut self, observed: Observed<'_>) -> Findings {
         let Observed { time, stats, particles, bodies, nearest } = observed;
+        let mut alarms = Vec::new();
+        if stats.steps == 0 {
+            alarms.extend(self.find_outliers(time, particles));
+        }
         let energy = self.account.add(time, particles, work(bodies));
         let distance = |x: Vec3| nearest(x).map(|(distance, _)| distance);
         let density = density::density_error(&self.params, &particles.positions, stats.steps, &distance);
         if stats.steps == 0 {
             self.context.starts_dense = Some(density.largest > DENSE_START);
         }
-        for (state, reach) in bodies.iter().zip(&self.reaches) {
-            if let Some(reach) = reach {
-                let speed = state.velocity.length() + reach * state.angular_velocity.length();
-                self.body_speed = self.body_speed.max(speed.into());
-            }
-        }
+        self.body_speed = self.scripted.fastest(time, bodies, &particles.positions, self.body_speed);
         let allowed = (self.reference_speed.powi(2) + 4.0 * self.body_speed.powi(2)).sqrt();
-        let (fastest, fast, fastest_place) = speeds(particles);
+        let (fastest, fast, fastest_place) = speeds(particles, &self.outliers);
         let counted = Counted { corrections: stats.wall_corrections, limited: stats.speed_limits };
         let since = |now: u32, before: u32| f64::from(now.saturating_sub(before));
         let place = |x: [f32; 3]| Some(Vec3::from(x)).filter(|x| x.is_finite());
@@ -235,7 +250,6 @@ impl Monitor {
             Watched::SpeedLimits => (since(counted.limited, self.before.limited), fastest_place),
         });
         self.before = counted;
-        let mut alarms = Vec::new();
         for (k, (&watched, (value, place))) in Watched::ALL.iter().zip(values).enumerate() {
             let count = particles.positions.len();
             let level = watched.level(value, count);
@@ -262,6 +276,29 @@ impl Monitor {
         alarms.sort_by_key(|alarm| std::cmp::Reverse(alarm.level));
         Findings { energy, density, alarms }
     }
+
+    /// Separates single particles that start much faster than the others, and reports them. The others may be faster than
+    /// the scene says: those of a program.
+    fn find_outliers(&mut self, time: f64, particles: &Particles) -> Option<Alarm> {
+        let (outliers, others) = Outliers::find(particles, self.driven_speed)?;
+        if outliers.ids().is_empty() {
+            self.reference_speed = self.reference_speed.max(others);
+            return None;
+        }
+        let first =
+            outliers.ids().first().and_then(|id| particles.ids.iter().position(|other| other == id))?;
+        let speed = f64::from(Vec3::from(particles.velocities[first]).length());
+        let place = particles.positions[first];
+        self.reference_speed = others;
+        self.account.set_reference_speed(others);
+        let level = Level::Warning;
+        self.level = self.level.max(level);
+        let limit = outliers::MUCH_FASTER;
+        let message = words::outliers(outliers.ids().len(), speed, others, place.into());
+        self.outliers = outliers;
+        let place = Some(place);
+        Some(Alarm { level, watched: Watched::Speed, value: speed / others, limit, time, place, message })
+    }
 }
 
 /// The work of all bodies on the fluid since the start in J.
@@ -269,9 +306,15 @@ fn work(bodies: &[BodyState]) -> f64 {
     bodies.iter().map(|body| f64::from(body.work)).sum()
 }
 
-/// The largest speed in m/s, the speed that one particle in a hundred exceeds, and where the fastest is.
-fn speeds(particles: &Particles) -> (f64, f64, Option<Vec3>) {
-    let squares: Vec<f32> = particles.velocities.iter().map(|&v| Vec3::from(v).length_squared()).collect();
+/// The largest speed in m/s, the speed that one particle in a hundred exceeds, and where the fastest is. Outliers have none.
+fn speeds(particles: &Particles, outliers: &Outliers) -> (f64, f64, Option<Vec3>) {
+    let mut squares: Vec<f32> =
+        particles.velocities.iter().map(|&v| Vec3::from(v).length_squared()).collect();
+    for (square, id) in squares.iter_mut().zip(&particles.ids) {
+        if outliers.contain(*id) {
+            *square = 0.0;
+        }
+    }
     let fastest = squares.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     let Some((place, &fastest)) = fastest else { return (0.0, 0.0, None) };
     let mut sorted = squares.clone();

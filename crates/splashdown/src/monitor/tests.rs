@@ -207,3 +207,75 @@ fn fluid_that_nothing_drives_may_move_by_a_part_of_a_spacing() {
     assert_eq!(levels(0.01), Level::Sound);
     assert!(levels(1.0) >= Level::Warning, "negative control: ten times that");
 }
+
+/// Findings of still water with the speeds of its first particles, at the start and after a step.
+fn with_speeds(speeds: &[f32], later: &[f32]) -> (Vec<Alarm>, Vec<Alarm>) {
+    let scene = Scene::builder("box", 1.0)
+        .domain([0.0; 3], [0.8, 0.8, 0.4])
+        .particle_spacing(0.05)
+        .block([0.0; 3], [0.4, 0.4, 0.4])
+        .build()
+        .unwrap();
+    let mut simulation = crate::Simulation::new(&scene, &Device::Cpu).unwrap();
+    let mut particles = simulation.particles().unwrap();
+    let mut monitor = simulation.monitor();
+    let mut observe = |steps, speeds: &[f32]| {
+        particles.velocities.fill([0.0; 3]);
+        for (v, &speed) in particles.velocities.iter_mut().zip(speeds) {
+            *v = [0.0, speed, 0.0];
+        }
+        let stats = Stats { steps, ..Stats::default() };
+        let time = 1e-3 * steps as f64;
+        let observed =
+            Observed { time, stats: &stats, particles: &particles, bodies: &[], nearest: &|_| None };
+        monitor.observe(observed).alarms
+    };
+    (observe(0, speeds), observe(1, later))
+}
+
+#[test]
+fn a_single_fast_particle_is_reported_and_does_not_permit_others_to_be_fast() {
+    // The fluid is 0.4 m high: 2.8 m/s.
+    let (start, later) = with_speeds(&[300.0], &[300.0, 100.0]);
+    assert!(start.len() == 1 && start[0].level == Level::Warning, "{start:?}");
+    assert!(start[0].message.contains("1 particle starts at up to 300.000 m/s"), "{}", start[0].message);
+    let fast = |alarms: &[Alarm]| {
+        alarms.iter().find(|alarm| alarm.watched == Watched::Speed).map(|alarm| alarm.level)
+    };
+    assert_eq!(fast(&later), Some(Level::Stop), "another one at 100 m/s: {later:?}");
+    // Controls: the particle itself is not a burst, and neither is a fast piece of fluid.
+    assert_eq!(fast(&with_speeds(&[300.0], &[300.0, 2.0]).1), None);
+    let (start, later) = with_speeds(&[300.0; 8], &[100.0; 8]);
+    assert!(start.is_empty() && fast(&later).is_none(), "{start:?} {later:?}");
+}
+
+/// The largest level of the speed in a run of a falling block with a body that is moved like this in the first second.
+fn scripted_speed(position: [f32; 3], motion: &str) -> f64 {
+    let [x, y, z] = position;
+    let text = format!(
+        "[scene]\nname = \"test\"\nduration = 0.2\n[domain]\nmin = [0, 0, 0]\nmax = [1.6, 1.6, 1.6]\n[surface]\nenabled = false\n\
+         [fluid]\nparticle_spacing = 0.1\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.8, 0.4, 1.6]\n\
+         [[body]]\nname = \"fan\"\nmesh = \"cube\"\nscale = 0.2\nposition = [{x}, {y}, {z}]\n{motion}\n"
+    );
+    let scene = Scene::parse(&text, "test.toml").unwrap_or_else(|errors| panic!("{errors}"));
+    let mut simulation = crate::Simulation::new(&scene, &Device::Cpu).unwrap();
+    let mut monitor = simulation.monitor();
+    for frame in 0..4 {
+        if frame > 0 {
+            simulation.advance(0.05).unwrap();
+        }
+        splashdown_gpu::block_on(simulation.examine_async(&mut monitor)).unwrap();
+    }
+    monitor.body_speed
+}
+
+#[test]
+fn only_bodies_near_the_fluid_permit_it_to_be_fast() {
+    let turning = "turn = [\"0\", \"3000 * t\", \"0\"]";
+    let fast = scripted_speed([0.8, 0.3, 0.8], turning);
+    assert!(fast > 5.0, "control: beside the fluid, {fast}");
+    assert_eq!(scripted_speed([1.3, 1.4, 0.8], turning), 0.0);
+    // A jump by 0.3 m.
+    let jump = scripted_speed([0.6, 0.3, 0.8], "move = [\"0.3 * floor(t / 0.1)\", \"0\", \"0\"]");
+    assert!(jump < 4.0 * 0.3 / 0.05 + 1.0, "{jump}");
+}

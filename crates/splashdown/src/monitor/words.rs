@@ -26,6 +26,18 @@ pub(super) struct Context {
     sound_speed: f32,
 }
 
+/// The sentence of particles that start faster than the others; `others` is the speed in m/s that those allow.
+pub(super) fn outliers(count: usize, speed: f64, others: f64, place: Vec3) -> String {
+    let (plural, verb) = if count == 1 { ("", "starts") } else { ("s", "start") };
+    format!(
+        "{count} particle{plural} {verb} at up to {speed:.3} m/s, at {}, {:.1} times the largest speed that the other fluid reaches by its \
+         energy ({others:.3} m/s). Correct the velocities of imported particles, or give pieces of fluid at least eight \
+         particles",
+        point(place),
+        speed / others
+    )
+}
+
 impl Context {
     pub fn new(scene: &Scene, sound_speed: f32, reference_speed: f32) -> Self {
         let spacing = scene.fluid.particle_spacing;
