@@ -138,6 +138,13 @@ pub fn caption_problem(scene: &Scene) -> Option<String> {
     })
 }
 
+/// What pictures of the meshes that a run has written lack.
+pub(crate) fn mesh_problem(scene: &Scene) -> Option<String> {
+    (!scene.surface.caps).then(|| {
+        "the meshes of this run have no surfaces at the walls (surface.caps = false): the liquid is drawn without them".into()
+    })
+}
+
 /// How rays are traced for pictures of this quality; `None` without rays.
 pub fn quality(scene: &Scene, quality: PictureQuality) -> Option<Quality> {
     match quality {

@@ -8,7 +8,8 @@ use splashdown::Device;
 use splashdown::run::{Progress, Started};
 use splashdown::scene::{Format, PictureKind, Scene};
 use splashdown_run::{
-    CompleteFrame, Reporter, RunEnd, RunError, RunOutcome, RunRequest, RunSettings, Session, Stop, run,
+    CompleteFrame, Reporter, RunEnd, RunError, RunFrames, RunOutcome, RunRequest, RunSettings, Session, Stop,
+    run,
 };
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
@@ -194,5 +195,31 @@ fn droplets_that_no_file_contains_are_reported_once() -> Outcome {
     assert_eq!(warnings(&drop, &[Format::Obj, Format::Glb])?, [""; 0]);
     let whole = format!("{drop}[surface]\nmin_blob = 0\nmin_neighbours = 0\n");
     assert_eq!(warnings(&whole, &[Format::Obj])?, [""; 0]);
+    Ok(())
+}
+
+#[test]
+fn meshes_are_written_without_their_surfaces_at_walls_on_request() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    // The number of triangles in the floor, in all, and the problems of the frames.
+    let written = |keys: &str| -> Result<(usize, usize, Vec<String>), Box<dyn std::error::Error>> {
+        let mut settings = settings();
+        settings.formats = Some(vec![Format::Obj]);
+        let scene = Scene::parse(&format!("{SCENE}[surface]\n{keys}\n"), "small.toml")?;
+        let mut request = RunRequest::new(scene, settings);
+        let out = folder.path().join("out");
+        request.out = Some(out.clone());
+        assert_finished(&run(request, &mut (), &|| Stop::No)?);
+        let mesh = splashdown_io::read_mesh(&out.join("mesh/surface_0004.obj"))?;
+        let is_in_floor = |t: &&[u32; 3]| t.iter().all(|&vertex| mesh.vertices[vertex as usize][1] == 0.0);
+        let in_floor = mesh.triangles.iter().filter(is_in_floor).count();
+        let problems = RunFrames::open(&out, None)?.problems().collect();
+        Ok((in_floor, mesh.triangles.len(), problems))
+    };
+    let (in_floor, all, problems) = written("")?;
+    assert!(in_floor > 50 && problems.is_empty(), "{in_floor} of {all}: {problems:?}");
+    let (in_floor, rest, problems) = written("caps = false")?;
+    assert!(in_floor == 0 && rest > all / 5 && rest < all, "{in_floor} of {rest}");
+    assert!(problems.len() == 1 && problems[0].contains("surface.caps"), "{problems:?}");
     Ok(())
 }

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use splashdown::foam::DiffuseKind;
 use splashdown::run::Frame;
 use splashdown::scene::{Format, Scene};
+use splashdown::surface::{Walls, remove_caps};
 use splashdown::{BodyMesh, Stats};
 use splashdown_io::Particles;
 use splashdown_io::{FrameWriter, IoError, Job, WrittenFile};
@@ -72,6 +73,15 @@ fn points_of(frame: &Frame) -> Vec<(&'static str, Arc<Particles>)> {
         .collect()
 }
 
+/// A frame without the triangles of its mesh that lie in walls; `None` if it has no mesh.
+fn without_caps(frame: &Frame, walls: &Walls) -> Option<Frame> {
+    let mut mesh = frame.mesh.as_ref()?.as_ref().clone();
+    remove_caps(&mut mesh, walls);
+    let mut open = frame.clone();
+    open.mesh = Some(Arc::new(mesh));
+    Some(open)
+}
+
 /// Writes the particles and meshes of a run.
 #[derive(Debug)]
 pub(crate) struct FrameFiles {
@@ -80,6 +90,8 @@ pub(crate) struct FrameFiles {
     folder: RunFolder,
     formats: Vec<Format>,
     animated: Animated,
+    /// The walls whose triangles the meshes do not contain.
+    open_walls: Option<Walls>,
 }
 
 impl FrameFiles {
@@ -101,7 +113,9 @@ impl FrameFiles {
             indices.iter_mut().for_each(|index| index.add_existing(last, scene.frame_rate));
         }
         let tracker = Tracker::new(indices);
-        Ok(Self { writer: Arc::new(FrameWriter::start()?), tracker, folder, formats, animated })
+        let writer = Arc::new(FrameWriter::start()?);
+        let open_walls = (!scene.surface.caps).then(|| Walls::of_domain(&scene.domain));
+        Ok(Self { writer, tracker, folder, formats, animated, open_walls })
     }
 
     /// The writer, shared with the thread that draws pictures.
@@ -114,6 +128,8 @@ impl FrameFiles {
     /// # Errors
     /// The first failure of an earlier frame.
     pub fn submit(&mut self, frame: &Frame, pictures: Vec<PathBuf>) -> Result<(), IoError> {
+        let open = self.open_walls.as_ref().and_then(|walls| without_caps(frame, walls));
+        let frame = open.as_ref().unwrap_or(frame);
         let mut jobs = Vec::new();
         let mut files = Vec::new();
         let points = points_of(frame);

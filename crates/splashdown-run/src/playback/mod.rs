@@ -14,7 +14,7 @@ use splashdown::scene::{PictureKind, Scene};
 use splashdown::{BodyMesh, BodyState, SimulationError};
 use splashdown_io::{IoError, Mesh, Particles, read_mesh, read_particles, read_particles_with_attributes};
 
-use crate::{RunError, RunFolder};
+use crate::{RunError, RunFolder, appearance};
 use bodies::Track;
 use files::{FileIndex, FilesOfFrame};
 
@@ -127,7 +127,9 @@ impl RunFrames {
     /// What is missing beside the fluid in these frames: foam, and the places of bodies.
     pub(crate) fn problems_beside(&self, wanted: impl Fn(u32) -> bool) -> Vec<String> {
         let foam = self.scene.foam.enabled.then(|| self.index.without_foam(&wanted)).flatten();
-        let mut problems: Vec<String> = foam.into_iter().chain(self.problems.iter().cloned()).collect();
+        let meshes = appearance::mesh_problem(&self.scene).filter(|_| self.has_particles_and_meshes().1);
+        let mut problems: Vec<String> =
+            foam.into_iter().chain(meshes).chain(self.problems.iter().cloned()).collect();
         let tolerance = 0.5 / f64::from(self.scene.frame_rate);
         for track in &self.tracks {
             let is_unknown = |&number: &u32| wanted(number) && !track.knows(self.time(number), tolerance);

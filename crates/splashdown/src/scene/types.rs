@@ -398,6 +398,8 @@ pub struct SurfaceSettings {
     pub min_neighbours: u32,
     /// Support radius of the field divided by the particle spacing.
     pub support_ratio: f32,
+    /// Whether meshes that are written contain the triangles that lie in the walls.
+    pub caps: bool,
 }
 
 impl SurfaceSettings {
@@ -417,6 +419,7 @@ impl SurfaceSettings {
             min_blob: 9,
             min_neighbours: 3,
             support_ratio: 2.0,
+            caps: true,
         }
     }
 }

@@ -73,24 +73,30 @@ impl Components {
         if keep.iter().all(|&keep| keep) {
             return;
         }
-        let mut number = 0;
-        let numbers: Vec<u32> = keep
-            .iter()
-            .map(|&keep| {
-                number += u32::from(keep);
-                number.wrapping_sub(1)
-            })
-            .collect();
         mesh.triangles.retain(|&[a, _, _]| keep[a as usize]);
-        mesh.triangles.as_flattened_mut().iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
-        for values in [&mut mesh.vertices, &mut mesh.normals, &mut mesh.velocities] {
-            let mut keep = keep.iter();
-            values.retain(|_| keep.next().is_some_and(|&keep| keep));
-        }
-        for attribute in &mut mesh.attributes {
-            let mut keep = keep.iter().flat_map(|keep| std::iter::repeat_n(keep, attribute.components));
-            attribute.values.retain(|_| keep.next().is_some_and(|&keep| keep));
-        }
+        retain_vertices(mesh, &keep);
+    }
+}
+
+/// Removes the vertices whose flag is false, which no triangle uses. The others keep their order, normals, velocities and
+/// attributes.
+pub(super) fn retain_vertices(mesh: &mut Mesh, keep: &[bool]) {
+    let mut number = 0;
+    let numbers: Vec<u32> = keep
+        .iter()
+        .map(|&keep| {
+            number += u32::from(keep);
+            number.wrapping_sub(1)
+        })
+        .collect();
+    mesh.triangles.as_flattened_mut().iter_mut().for_each(|vertex| *vertex = numbers[*vertex as usize]);
+    for values in [&mut mesh.vertices, &mut mesh.normals, &mut mesh.velocities] {
+        let mut keep = keep.iter();
+        values.retain(|_| keep.next().is_some_and(|&keep| keep));
+    }
+    for attribute in &mut mesh.attributes {
+        let mut keep = keep.iter().flat_map(|keep| std::iter::repeat_n(keep, attribute.components));
+        attribute.values.retain(|_| keep.next().is_some_and(|&keep| keep));
     }
 }
 

@@ -14,6 +14,7 @@ use splashdown_io::Mesh;
 use crate::boundary::{Images, closed_bounds};
 use crate::scene::Domain;
 use crate::state::Params;
+use crate::surface::components::retain_vertices;
 use crate::surface::params::LAYER_MARGINS;
 
 /// The WGSL side: folding, reflections and tests of nodes. Imports surface/lattice.
@@ -103,8 +104,8 @@ impl Walls {
     }
 }
 
-/// Removes the triangles that lie in a wall; returns their number. What remains is the free surface, open along the
-/// walls, and a strip of up to a cell along its edge, for pictures with another model of the tank.
+/// Removes the triangles that lie in a wall, and their vertices; returns the number of triangles. What remains is the free
+/// surface, open along the walls, and a strip of up to a cell along its edge, for pictures with another model of the tank.
 pub fn remove_caps(mesh: &mut Mesh, walls: &Walls) -> usize {
     let sides = |vertex: u32| {
         let x = Vec3::from(mesh.vertices[vertex as usize]);
@@ -117,7 +118,10 @@ pub fn remove_caps(mesh: &mut Mesh, walls: &Walls) -> usize {
         .copied()
         .filter(|t| t.map(sides).into_iter().reduce(|a, b| a & b) == Some(0))
         .collect();
+    let mut is_used = vec![false; mesh.vertices.len()];
+    free.as_flattened().iter().for_each(|&vertex| is_used[vertex as usize] = true);
     mesh.triangles = free;
+    retain_vertices(mesh, &is_used);
     before - mesh.triangles.len()
 }
 
@@ -229,7 +233,11 @@ mod tests {
                 .sum()
         };
         let whole = area(&open);
+        let vertices = open.vertices.len();
         assert!(remove_caps(&mut open, &walls()) > 0);
+        assert!(open.vertices.len() < vertices / 2 && open.normals.len() == open.vertices.len());
+        let largest = open.triangles.as_flattened().iter().max();
+        assert_eq!(largest.map(|&vertex| vertex as usize + 1), Some(open.vertices.len()));
         // The level, and the narrow strips along the edges of the box.
         let ratio = area(&open) / (SIDE * SIDE);
         assert!((0.99..1.05).contains(&ratio), "{ratio}");

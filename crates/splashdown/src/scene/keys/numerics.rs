@@ -148,6 +148,12 @@ pub(super) static SURFACE: Table = Table {
             "Support radius of the field divided by the particle spacing.",
         )
         .default("2.0"),
+        key(
+            "caps",
+            Kind::Boolean,
+            "Whether the meshes that are written contain the surfaces of the liquid at the walls; false for pictures with another model of the tank.",
+        )
+        .default("true"),
     ],
 };
 

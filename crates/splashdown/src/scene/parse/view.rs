@@ -14,6 +14,7 @@ pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part
     let min_blob = section.integer("min_blob");
     let min_neighbours = section.integer("min_neighbours");
     let support_ratio = section.number("support_ratio");
+    let caps = section.boolean("caps");
     let spacing = fluid.map(|fluid| fluid.particle_spacing);
     let standard = SurfaceSettings::for_spacing(spacing.unwrap_or(1.0));
     let surface = SurfaceSettings {
@@ -25,6 +26,7 @@ pub(super) fn read_surface(section: &Section<'_>, fluid: Option<&Fluid>) -> Part
         min_blob: min_blob?.unwrap_or(standard.min_blob),
         min_neighbours: min_neighbours?.unwrap_or(standard.min_neighbours),
         support_ratio: support_ratio?.unwrap_or(standard.support_ratio),
+        caps: caps?.unwrap_or(standard.caps),
     };
     let Some(spacing) = spacing else { return Ok(surface) };
     // Finer cells only resolve the shape of single particles; coarser cells miss gaps between them.
