@@ -4,9 +4,10 @@ use std::f32::consts::PI;
 
 use super::Built;
 use crate::sample;
+use crate::scene::lattice::Sampler;
 use crate::scene::{
-    DensityMode, Derived, InitialPressure, Method, Outlet, Quantity, Reported, Scene, Section, Shape,
-    SinkRegion, SurfaceTension, lattice, outlet,
+    DensityMode, Derived, InitialPressure, Method, Outlet, Quantity, Reported, Scene, Section, SinkRegion,
+    SurfaceTension, lattice, outlet,
 };
 
 /// A scene with more steps than this takes days and gives a warning.
@@ -107,29 +108,24 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         );
         solver.warn("density", message, "set accuracy = \"engineering\" under [solver] to measure pressure");
     }
-    let spacing = f64::from(scene.fluid.particle_spacing);
-    for (index, block) in scene.fluid.blocks.iter().enumerate() {
-        let Shape::Box { size, .. } = block.shape else { continue };
-        let lengths = size.to_array().map(|length| f64::from(length) / spacing);
-        let off = |length: &f64| (length - length.round()).abs() > 0.1;
-        if let Some(axis) = lengths.iter().position(|length| off(length) && *length < 50.0) {
+    for (index, sampler) in Sampler::all(&scene.domain, &scene.fluid).iter().enumerate() {
+        let [x, y, z] = sampler.layers();
+        let excess = sampler.volume_ratio().map_or(0.0, |ratio| ratio - 1.0);
+        if excess.abs() > INEXACT_VOLUME {
             let message = format!(
-                "fluid.block[{index}] is {:.2} spacings long along {}: its {} layers of particles have {:.1} % {} volume",
-                lengths[axis],
-                ["x", "y", "z"][axis],
-                lengths[axis].round(),
-                (lengths[axis].round() / lengths[axis] - 1.0).abs() * 100.0,
-                if lengths[axis].round() > lengths[axis] { "more" } else { "less" }
+                "the {x} x {y} x {z} particles of fluid.block[{index}] have {:.1} % {} volume than the block",
+                100.0 * excess.abs(),
+                if excess > 0.0 { "more" } else { "less" }
             );
-            fluid.warn(
-                "particle_spacing",
-                message,
-                "the volume is exact if sizes are multiples of the spacing",
-            );
+            let hint = "the volume is exact if sizes are multiples of the spacing";
+            fluid.warn("particle_spacing", message, hint);
         }
     }
     Ok(())
 }
+
+/// The relative error of the volume of a block above which there is a warning.
+const INEXACT_VOLUME: f64 = 0.02;
 
 /// A viscosity that shortens the time step by more than this factor gives a warning with an explicit solver.
 const MUCH_SHORTER: f32 = 10.0;

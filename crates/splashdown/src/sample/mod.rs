@@ -24,7 +24,8 @@ use serde::Serialize;
 use splashdown_io::{Attribute, IoError, Particles};
 
 use crate::bodies::{BodyError, LoadedBody};
-use crate::scene::{DensityMode, Domain, Fluid, Scene, place};
+use crate::scene::lattice::Sampler;
+use crate::scene::{DensityMode, Domain, Fluid, Method, Scene, place};
 
 pub use crate::scene::lattice::MAX_PARTICLES;
 pub(crate) use crate::scene::lattice::fitting_spacing;
@@ -43,6 +44,9 @@ pub use spacing::{fitted_spacing, typical_spacing};
 /// would displace more than its volume (a quarter more for a ball 12 spacings across), so all particles whose
 /// centres lie outside stay.
 const CLEARANCE: [f32; 2] = [0.49, 0.05];
+/// For fluid that is packed around bodies: all particles outside remain. The offset separates particles on opposite faces of
+/// a body, so that it displaces its volume if both lie in layers of particles.
+const CUT: (f32, Vec3) = (0.0, Vec3::new(0.03, 0.02, 0.01));
 /// Smallest width, in spacings, of a gap between bodies or between a body and a wall that holds fluid.
 const NARROWEST: f32 = 0.95;
 
@@ -186,10 +190,27 @@ pub struct Inventory {
     pub emitted: u64,
 }
 
+/// The smallest distance of particles from bodies, and an offset of the places where it is measured, in spacings.
+pub(crate) fn clearance_of(scene: &Scene) -> (f32, Vec3) {
+    (CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)], Vec3::ZERO)
+}
+
+/// Whether particles near bodies are packed: blocks that do not overlap, whose density is summed.
+pub(crate) fn is_packed_around_bodies(scene: &Scene) -> bool {
+    let is_summed = scene.solver.method != Method::Wcsph || scene.solver.density == DensityMode::Summation;
+    let samplers = || Sampler::all(&scene.domain, &scene.fluid);
+    !scene.bodies.is_empty()
+        && scene.emitters.is_empty()
+        && has_blocks_only(&scene.fluid)
+        && is_summed
+        && samplers().iter().all(|sampler| sampler.counts().1 == 0)
+}
+
 /// Removes the particles inside or too near to a body, renumbers the ids from 0 and returns the number
 /// removed.
 pub(crate) fn remove_inside(scene: &Scene, particles: &mut Particles, bodies: &[LoadedBody]) -> u32 {
-    let removed = retain_outside(scene, particles, &bodies.iter().collect::<Vec<_>>());
+    let clearance = if is_packed_around_bodies(scene) { CUT } else { clearance_of(scene) };
+    let removed = retain_outside(scene, particles, &bodies.iter().collect::<Vec<_>>(), clearance);
     if removed > 0 {
         particles.ids = (0..particles.positions.len() as u32).collect();
     }
@@ -197,11 +218,16 @@ pub(crate) fn remove_inside(scene: &Scene, particles: &mut Particles, bodies: &[
 }
 
 /// Removes the particles inside or too near to a body at its initial pose and returns the number removed.
-pub(crate) fn retain_outside(scene: &Scene, particles: &mut Particles, bodies: &[&LoadedBody]) -> u32 {
+pub(crate) fn retain_outside(
+    scene: &Scene,
+    particles: &mut Particles,
+    bodies: &[&LoadedBody],
+    (clearance, offset): (f32, Vec3),
+) -> u32 {
     let spacing = scene.fluid.particle_spacing;
-    let clearance = CLEARANCE[usize::from(scene.solver.density == DensityMode::Continuity)] * spacing;
+    let (clearance, offset) = (clearance * spacing, offset * spacing);
     let free = |x: Vec3| {
-        let mut near = surfaces_near(bodies, x, spacing);
+        let mut near = surfaces_near(bodies, x + offset, spacing);
         if near.iter().any(|(distance, _)| *distance < clearance) {
             return false;
         }

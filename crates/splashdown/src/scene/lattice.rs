@@ -18,6 +18,13 @@ const MARGIN: f64 = 0.25;
 /// spacings.
 const ALIGNED: f64 = 0.25;
 
+/// The largest logarithm of the distance of layers over the spacing. At this one the kernel sums of a lattice differ by less than
+/// 1 % from those of a cubic one.
+const MOST_DISTORTION: f64 = 0.1;
+
+/// The thinnest part of a block that is packed by itself, in layers: images of images are left out.
+const THINNEST: f64 = 6.0;
+
 /// A block's shape in f64.
 #[derive(Debug, Clone, Copy)]
 enum Solid {
@@ -43,6 +50,14 @@ impl Solid {
             Self::Box { min, max } => (min, max),
             Self::Sphere { center, radius } => (center.map(|x| x - radius), center.map(|x| x + radius)),
         }
+    }
+
+    /// Whether two boxes are less than `reach` apart.
+    fn touches(&self, other: &Self, reach: f64) -> bool {
+        let (Self::Box { min: low, max: high }, Self::Box { min: from, max: to }) = (self, other) else {
+            return false;
+        };
+        (0..3).all(|a| low[a] - to[a] < reach && from[a] - high[a] < reach)
     }
 
     /// Whether a point is inside, or no further than `margin` outside.
@@ -97,6 +112,8 @@ pub(crate) struct Sampler {
     solid: Solid,
     first: [f64; 3],
     counts: [u64; 3],
+    /// Distances of the layers along each axis in m.
+    pitches: [f64; 3],
     spacing: f64,
     /// Earlier blocks that may overlap this one.
     earlier: Vec<Solid>,
@@ -111,53 +128,46 @@ impl Sampler {
         let solids: Vec<Solid> = fluid.blocks.iter().map(|block| Solid::new(&block.shape)).collect();
         let mut samplers: Vec<Self> = Vec::with_capacity(solids.len());
         for index in 0..solids.len() {
-            let mut sampler = Self::new(domain, spacing, &solids[..=index]);
-            if let Some(first) = samplers.iter().find_map(|earlier| sampler.joined(earlier, domain)) {
-                sampler.first = first;
+            let (solid, before) = (solids[index], &solids[..index]);
+            let touching = samplers.iter().find(|earlier| solid.touches(&earlier.solid, spacing));
+            let pitches = pitches_of(domain, spacing, &solid, touching);
+            let mut sampler = Self::new(domain, spacing, pitches, solid, before);
+            if let Some(earlier) = touching {
+                sampler.first = sampler.joined(earlier, domain);
             }
             samplers.push(sampler);
         }
         samplers
     }
 
-    /// The first point of this box's lattice, moved onto the lattice of an earlier box that it touches; `None` if it does
-    /// not touch it. Across the faces that touch, it moves by at most half a spacing, and otherwise by at most a quarter.
-    /// It does not move away from a wall that it touches.
-    fn joined(&self, earlier: &Self, domain: &Domain) -> Option<[f64; 3]> {
-        let (Solid::Box { min: low, max: high }, Solid::Box { min: from, max: to }) =
-            (&self.solid, &earlier.solid)
-        else {
-            return None;
-        };
-        let spacing = self.spacing;
-        if (0..3).any(|a| low[a] - to[a] >= spacing || from[a] - high[a] >= spacing) {
-            return None;
-        }
+    /// The first point of this box's lattice, moved onto the lattice of an earlier box that it touches. Across the faces
+    /// that touch, it moves by at most half a spacing, and otherwise by at most a quarter. It does not move away from a
+    /// wall that it touches, nor along an axis on which the layers of the two boxes are not equally far apart.
+    fn joined(&self, earlier: &Self, domain: &Domain) -> [f64; 3] {
+        let ((low, high), (from, to)) = (self.solid.bounds(), earlier.solid.bounds());
         let mut first = self.first;
         for a in 0..3 {
-            let is_fixed = (0..2).any(|side| {
-                let (face, wall) = [(low[a], domain.min[a]), (high[a], domain.max[a])][side];
-                domain.closed[a][side] && (face - f64::from(wall)).abs() <= TOUCH * spacing
-            });
+            let pitch = self.pitches[a];
+            let is_fixed = touches(domain, self.spacing, a, low[a], high[a]).contains(&true);
+            let is_parallel = (pitch - earlier.pitches[a]).abs() * self.counts[a] as f64 <= TOUCH * pitch;
             let gap = (low[a] - to[a]).max(from[a] - high[a]);
-            let tolerance = if gap > -spacing { 0.5 } else { ALIGNED };
-            let apart = (self.first[a] - earlier.first[a]) / spacing;
+            let tolerance = if gap > -self.spacing { 0.5 } else { ALIGNED };
+            let apart = (self.first[a] - earlier.first[a]) / pitch;
             let shift = apart.round() - apart;
-            let moved = self.first[a] + shift * spacing;
-            let last = moved + self.counts[a].saturating_sub(1) as f64 * spacing;
+            let moved = self.first[a] + shift * pitch;
+            let last = moved + self.counts[a].saturating_sub(1) as f64 * pitch;
             let fits = moved >= self.bounds.0[a] && last <= self.bounds.1[a];
-            if !is_fixed && fits && shift.abs() <= tolerance {
+            if !is_fixed && is_parallel && fits && shift.abs() <= tolerance {
                 first[a] = moved;
             }
         }
-        Some(first)
+        first
     }
 
-    fn new(domain: &Domain, spacing: f64, solids: &[Solid]) -> Self {
-        let (solid, before) = (solids[solids.len() - 1], &solids[..solids.len() - 1]);
+    fn new(domain: &Domain, spacing: f64, pitches: [f64; 3], solid: Solid, before: &[Solid]) -> Self {
         let (low, high) = solid.bounds();
         let along = |axis: usize| match &solid {
-            Solid::Box { .. } => along_box(domain, spacing, axis, low[axis], high[axis]),
+            Solid::Box { .. } => along_box(domain, spacing, pitches[axis], axis, low[axis], high[axis]),
             Solid::Sphere { .. } => {
                 let half = (0.5 * (high[axis] - low[axis]) / spacing).ceil();
                 let center = 0.5 * (low[axis] + high[axis]);
@@ -174,6 +184,7 @@ impl Sampler {
             solid,
             first: axes.map(|(first, _)| first),
             counts: axes.map(|(_, count)| count),
+            pitches,
             spacing,
             earlier: before.iter().filter(near).copied().collect(),
             bounds: particle_bounds(domain, spacing),
@@ -182,7 +193,7 @@ impl Sampler {
 
     /// Calls `visit(position, free)` for each particle, x fastest; `free` is false inside an earlier block.
     pub fn for_each(&self, mut visit: impl FnMut([f64; 3], bool)) {
-        let at = |axis: usize, index: u64| self.first[axis] + index as f64 * self.spacing;
+        let at = |axis: usize, index: u64| self.first[axis] + index as f64 * self.pitches[axis];
         for k in 0..self.counts[2] {
             for j in 0..self.counts[1] {
                 for i in 0..self.counts[0] {
@@ -194,6 +205,47 @@ impl Sampler {
                 }
             }
         }
+    }
+
+    /// The volume of the particles over that of the box before parts that overlap earlier blocks are left out; `None` for a
+    /// ball.
+    pub fn volume_ratio(&self) -> Option<f64> {
+        let Solid::Box { min, max } = &self.solid else { return None };
+        let volume: f64 = (0..3).map(|a| (max[a] - min[a]) / self.spacing).product();
+        Some(self.counts.into_iter().map(|count| count as f64).product::<f64>() / volume)
+    }
+
+    /// Numbers of layers along each axis.
+    pub fn layers(&self) -> [u64; 3] {
+        self.counts
+    }
+
+    /// The corners of the smallest box of whole cells of the lattice that contains the common part of this box and of each of
+    /// `boxes`, at least [`THINNEST`] cells along each axis; `None` if there is no common part, or for a ball.
+    pub fn part_within(&self, boxes: &[(Vec3, Vec3)]) -> Option<(Vec3, Vec3)> {
+        let Solid::Box { .. } = self.solid else { return None };
+        let low: [f64; 3] = std::array::from_fn(|a| self.first[a] - 0.5 * self.pitches[a]);
+        let cell = |a: usize, x: f32| (f64::from(x) - low[a]) / self.pitches[a];
+        let mut range: [[f64; 2]; 3] = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        for (from, to) in boxes {
+            let ends: [[f64; 2]; 3] = std::array::from_fn(|a| {
+                [cell(a, from[a]).max(0.0), cell(a, to[a]).min(self.counts[a] as f64)]
+            });
+            if ends.iter().all(|[from, to]| from < to) {
+                range = std::array::from_fn(|a| [range[a][0].min(ends[a][0]), range[a][1].max(ends[a][1])]);
+            }
+        }
+        if range.iter().any(|[from, to]| from >= to) {
+            return None;
+        }
+        let ends: [[f32; 2]; 3] = std::array::from_fn(|a| {
+            let count = self.counts[a] as f64;
+            let [from, to] = [range[a][0].floor(), range[a][1].ceil()];
+            let missing = (THINNEST - (to - from)).max(0.0);
+            let from = (from - missing).max(0.0);
+            [from, to.max(from + THINNEST).min(count)].map(|index| (low[a] + index * self.pitches[a]) as f32)
+        });
+        Some((ends.map(|end| end[0]).into(), ends.map(|end| end[1]).into()))
     }
 
     /// The number of particles created, and the number left out because they overlap an earlier block.
@@ -219,27 +271,80 @@ impl Sampler {
     }
 }
 
-/// The first coordinate (m) and the number of the particles of a box along an axis. They start half a spacing
-/// from a wall that the box touches; otherwise they are centred in the box.
-fn along_box(domain: &Domain, spacing: f64, axis: usize, low: f64, high: f64) -> (f64, u64) {
-    let length = (high - low) / spacing;
-    let closed = domain.closed[axis];
+/// Whether a box from `low` to `high` (m) touches the lower and the upper closed side of an axis.
+fn touches(domain: &Domain, spacing: f64, axis: usize, low: f64, high: f64) -> [bool; 2] {
     let place = [domain.min[axis], domain.max[axis]].map(f64::from);
-    let touches_low = closed[0] && (low - place[0]).abs() <= TOUCH * spacing;
-    let touches_high = closed[1] && (place[1] - high).abs() <= TOUCH * spacing;
-    let (count, start) = match (touches_low, touches_high) {
+    let is_near = |face: f64, wall: f64| (face - wall).abs() <= TOUCH * spacing;
+    let [low_closed, high_closed] = domain.closed[axis];
+    [low_closed && is_near(low, place[0]), high_closed && is_near(high, place[1])]
+}
+
+/// The distances of the layers of particles of a block along each axis in m.
+///
+/// A box between two walls may be no multiple of the spacing wide. Its layers are then farther apart or closer than a
+/// spacing, so that they fill it without gaps at the walls, and those along the other axes the reverse, so that each
+/// particle keeps its volume. A box between no two walls continues the lattice of an earlier box that it touches.
+fn pitches_of(domain: &Domain, spacing: f64, solid: &Solid, touching: Option<&Sampler>) -> [f64; 3] {
+    let Solid::Box { min, max } = solid else { return [spacing; 3] };
+    let lengths: [f64; 3] = std::array::from_fn(|a| (max[a] - min[a]) / spacing);
+    let spans: [bool; 3] =
+        std::array::from_fn(|a| touches(domain, spacing, a, min[a], max[a]) == [true, true]);
+    let most = spans.iter().filter(|&&spans| spans).count();
+    match touching {
+        Some(earlier) if most == 0 => return earlier.pitches,
+        _ if (0..3).all(|a| !spans[a] || (lengths[a] - lengths[a].round()).abs() <= TOUCH) => {
+            return [spacing; 3];
+        }
+        _ => {}
+    }
+    // Each number of layers is rounded down or up.
+    let counts = |axis: usize| {
+        if spans[axis] {
+            vec![(lengths[axis] + TOUCH).floor(), (lengths[axis] - TOUCH).ceil()]
+        } else {
+            vec![1.0]
+        }
+    };
+    let mut best = [spacing; 3];
+    let mut least = f64::INFINITY;
+    for x in counts(0) {
+        for y in counts(1) {
+            for z in counts(2) {
+                let stretch: [f64; 3] =
+                    std::array::from_fn(|a| if spans[a] { lengths[a] / [x, y, z][a] } else { 1.0 });
+                let volume: f64 = stretch.iter().product();
+                // Nothing compensates for fluid that is compressed between walls on all sides.
+                let is_compressed = most == 3 && volume < 1.0;
+                let distortion =
+                    stretch.iter().map(|stretch| stretch.ln().abs()).fold(volume.ln().abs(), f64::max);
+                if distortion < least && distortion <= MOST_DISTORTION && !is_compressed {
+                    least = distortion;
+                    let others = if most < 3 { volume.powf(-1.0 / (3 - most) as f64) } else { 1.0 };
+                    best = std::array::from_fn(|a| spacing * if spans[a] { stretch[a] } else { others });
+                }
+            }
+        }
+    }
+    best
+}
+
+/// The first coordinate (m) and the number of the particles of a box along an axis, whose layers are `pitch` (m) apart. They
+/// start half a pitch from a wall that the box touches; otherwise they are centred in the box.
+fn along_box(domain: &Domain, spacing: f64, pitch: f64, axis: usize, low: f64, high: f64) -> (f64, u64) {
+    let length = (high - low) / pitch;
+    let (count, start) = match touches(domain, spacing, axis, low, high) {
         // Rounding up would compress the fluid between two walls.
-        (true, true) => centred((length + TOUCH).floor(), length, spacing),
-        (true, false) => (length.round(), 0.5 * spacing),
-        (false, true) => (length.round(), (length - length.round() + 0.5) * spacing),
-        (false, false) => centred(length.round(), length, spacing),
+        [true, true] => centred((length + TOUCH).floor(), length, pitch),
+        [true, false] => (length.round(), 0.5 * pitch),
+        [false, true] => (length.round(), (length - length.round() + 0.5) * pitch),
+        [false, false] => centred(length.round(), length, pitch),
     };
     (low + start, count as u64)
 }
 
-/// [`along_box`] along all axes.
+/// [`along_box`] along all axes, for layers a spacing apart.
 pub(crate) fn axes(domain: &Domain, spacing: f64, low: Vec3, high: Vec3) -> [(f64, u64); 3] {
-    std::array::from_fn(|a| along_box(domain, spacing, a, f64::from(low[a]), f64::from(high[a])))
+    std::array::from_fn(|a| along_box(domain, spacing, spacing, a, f64::from(low[a]), f64::from(high[a])))
 }
 
 /// The corners in m of the box in which particles may lie: half a spacing inside closed sides, unbounded at
@@ -256,8 +361,7 @@ pub(crate) fn particle_bounds(domain: &Domain, spacing: f64) -> ([f64; 3], [f64;
     (std::array::from_fn(low), std::array::from_fn(high))
 }
 
-/// `count` particles centred in a length given in spacings: their number, and the offset in m of the first
-/// one.
-fn centred(count: f64, length: f64, spacing: f64) -> (f64, f64) {
-    (count, (length - count + 1.0) * 0.5 * spacing)
+/// `count` layers centred in a length given in pitches (m): their number, and the offset in m of the first one.
+fn centred(count: f64, length: f64, pitch: f64) -> (f64, f64) {
+    (count, (length - count + 1.0) * 0.5 * pitch)
 }

@@ -142,7 +142,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         },
         solid_stretch: solid.stretch,
         slope_offset: scene.fluid.particle_spacing * solid.slope_offset,
-        unused_0: 0.0,
-        unused_1: 0.0,
+        background_pressure: 0.0,
+        unused: 0.0,
     }
 }

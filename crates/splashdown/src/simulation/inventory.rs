@@ -46,8 +46,15 @@ pub fn initial_packing(
     }
     let mut particles = built.take_particles(scene)?;
     let bodies = Simulation::load_bodies(scene, progress)?;
-    sample::remove_inside(scene, &mut particles, &bodies);
+    let is_relaxed = particles.len() <= MOST_RELAXED;
+    if is_relaxed {
+        sample::remove_inside(scene, &mut particles, &bodies);
+    } else {
+        // Particles at the surfaces of bodies would be reported although the packing moves them away.
+        let bodies: Vec<_> = bodies.iter().collect();
+        sample::retain_outside(scene, &mut particles, &bodies, sample::clearance_of(scene));
+    }
     built.flow(scene)?.fill_nozzles(&mut particles, scene);
-    let rounds = if particles.len() > MOST_RELAXED { 0 } else { MAX_ROUNDS };
+    let rounds = if is_relaxed { MAX_ROUNDS } else { 0 };
     packing::relax(scene, &mut particles, &bodies, rounds, progress)
 }

@@ -145,7 +145,7 @@ impl Simulation {
             .collect();
         // The fluid does not overlap the old bodies: only new ones displace particles.
         let new: Vec<&LoadedBody> = loaded.iter().filter(|body| place(&body.name).is_none()).collect();
-        let removed = sample::retain_outside(scene, &mut particles, &new);
+        let removed = sample::retain_outside(scene, &mut particles, &new, sample::clearance_of(scene));
         let table = match scene.solver.method == self.scene.solver.method {
             true => self.fields.table(),
             false => Scheme::new(scene).carried(),

@@ -54,7 +54,14 @@ struct Forces {
 fn checkpoint(kernel: KernelKind) -> Checkpoint {
     let mut scene = Scene::parse(SCENE, "basin.toml").unwrap();
     scene.solver.kernel = kernel;
-    let mut simulation = Simulation::new(&scene, &crate::Device::Cpu).unwrap();
+    // Without the packing around bodies, particles are so far from them that contacts do not limit their velocities.
+    let mut particles = crate::sample::particles(&scene).unwrap();
+    let bodies = Simulation::load_bodies(&scene, &|_, _| {}).unwrap();
+    let near: Vec<_> = bodies.iter().collect();
+    crate::sample::retain_outside(&scene, &mut particles, &near, crate::sample::clearance_of(&scene));
+    particles.ids = (0..particles.len() as u32).collect();
+    let executor = splashdown_gpu::CpuExecutor::new().into();
+    let mut simulation = Simulation::with_particles(&scene, executor, &particles).unwrap();
     simulation.advance(0.02).unwrap();
     let text = SCENE.replace("[solver]", &format!("[solver]\nkernel = \"{kernel}\""));
     simulation.checkpoint(&text).unwrap()

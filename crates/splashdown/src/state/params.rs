@@ -105,10 +105,10 @@ gpu_struct! {
         solid_stretch: f32,
         /// Offset of the distance to a body for the gradient of the density, in metres.
         slope_offset: f32,
+        /// Pressure at the rest density in Pa; not zero in the initial packing only.
+        background_pressure: f32,
         /// Uniform buffers are multiples of 16 bytes.
-        unused_0: f32,
-        /// As `unused_0`.
-        unused_1: f32,
+        unused: f32,
     }
 }
 
@@ -161,7 +161,7 @@ impl Params {
         } else {
             stiffness * (x.powf(self.exponent) - 1.0)
         };
-        if self.clamp_pressure == 1 { p.max(0.0) } else { p }
+        (if self.clamp_pressure == 1 { p.max(0.0) } else { p }) + self.background_pressure
     }
 
     /// True if a finite point lies outside the domain.

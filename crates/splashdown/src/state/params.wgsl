@@ -47,8 +47,8 @@ struct Params {
     surface_completion: f32,
     solid_stretch: f32,
     slope_offset: f32,
-    unused_0: f32,
-    unused_1: f32,
+    background_pressure: f32,
+    unused: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {
@@ -63,7 +63,7 @@ fn pressure_at(density: f32) -> f32 {
     } else {
         p = stiffness * (pow(x, params.exponent) - 1.0);
     }
-    return select(p, max(p, 0.0), params.clamp_pressure == 1u);
+    return select(p, max(p, 0.0), params.clamp_pressure == 1u) + params.background_pressure;
 }
 
 // The length of the next step; see Params::step_length.

@@ -1,6 +1,6 @@
 //! Blocks to particles.
 
-use splashdown::scene::Scene;
+use splashdown::scene::{Scene, Shape};
 use splashdown::{check, sample};
 
 use crate::{CUBE, changed, parse};
@@ -134,12 +134,12 @@ fn a_block_of_fractional_spacings_touches_its_wall() {
     // Away from walls: in the middle.
     let free = floor.replace("position = [0, 0, 0]", "position = [0, 0.4, 0]");
     assert!((low(&free, 1) - 0.435).abs() < 1e-6);
-    // From wall to wall the layers are not compressed: 20.8 spacings contain 20 layers, none closer to a wall than half
-    // a spacing.
+    // From wall to wall: 21 layers in 20.8 spacings, half their distance from the walls.
     let full = changed("max = [1, 1, 1]", "max = [1, 1, 1.04]")
         .replace("size = [0.5, 0.5, 0.5]", "size = [0.5, 0.5, 1.04]");
-    assert!(low(&full, 2) >= 0.025 && high(&full, 2) <= 1.04 - 0.025);
-    assert_eq!(check::count(&parse(&full).expect("valid")), 10 * 10 * 20);
+    let half = 0.5 * 1.04 / 21.0;
+    assert!((low(&full, 2) - half).abs() < 1e-6 && (high(&full, 2) - (1.04 - half)).abs() < 1e-6);
+    assert_eq!(check::count(&parse(&full).expect("valid")), 10 * 10 * 21);
 }
 
 #[test]
@@ -160,4 +160,65 @@ fn counting_does_not_create_particles() {
         check::count(&scene) > sample::MAX_PARTICLES,
         "control: the suggested spacing is not coarser than necessary"
     );
+}
+
+/// A box between the four upright walls of a tank, 10.5 by `height` by 20.4 spacings.
+fn between_walls(height: f32) -> Scene {
+    let text = format!(
+        "[scene]\nname = \"between\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [0.525, 1, 1.02]\n[fluid]\n\
+         particle_spacing = 0.05\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.525, {height}, 1.02]\n"
+    );
+    parse(&text).expect("valid")
+}
+
+#[test]
+fn a_box_between_walls_touches_both_and_has_its_volume() {
+    let scene = between_walls(0.6);
+    let points = positions(&scene);
+    let ends = |axis: usize| {
+        let low = points.iter().map(|p| p[axis]).fold(f32::INFINITY, f32::min);
+        let high = points.iter().map(|p| p[axis]).fold(f32::NEG_INFINITY, f32::max);
+        (low, high)
+    };
+    // Half of the distance of the layers from each wall.
+    for (axis, length, layers) in [(0, 0.525, 11.0), (2, 1.02, 20.0)] {
+        let (low, high) = ends(axis);
+        let half = 0.5 * length / layers;
+        assert!((low - half).abs() < 1e-5 && (length - high - half).abs() < 1e-5, "{axis}: {low} {high}");
+    }
+    let volume = points.len() as f32 * 0.05_f32.powi(3);
+    // To half a layer of twelve. With layers a spacing apart 6.6 % are missing.
+    assert!((volume / (0.525 * 0.6 * 1.02) - 1.0).abs() < 0.042, "{volume}");
+    // The layers above one another are as far apart as keeps the volume of a particle.
+    let pitch = points[points.len() - 1][1] - points[0][1];
+    let layers = points.len() as f32 / 220.0;
+    let stretch = 0.525 / 11.0 / 0.05 * (1.02 / 20.0 / 0.05);
+    assert!((pitch / (layers - 1.0) * stretch / 0.05 - 1.0).abs() < 1e-4, "{pitch}");
+}
+
+#[test]
+fn a_box_on_a_box_between_walls_continues_its_lattice() {
+    let mut scene = between_walls(0.5);
+    let below = positions(&scene);
+    let pitch = 0.525 / 11.0;
+    let mut upper = scene.fluid.blocks[0].clone();
+    upper.shape = Shape::Box { min: [0.1, 0.5, 0.2].into(), size: [0.2, 0.2, 0.3].into() };
+    scene.fluid.blocks.push(upper);
+    let points = positions(&scene);
+    assert!(points.len() > below.len());
+    for p in &points[below.len()..] {
+        let place = (p[0] - 0.5 * pitch) / pitch;
+        assert!((place - place.round()).abs() < 1e-3, "{p:?}");
+    }
+    assert!(smallest_distance(&points) > 0.94 * 0.05);
+}
+
+#[test]
+fn a_box_on_all_walls_is_not_compressed() {
+    let text = "[scene]\nname = \"full\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [0.52, 0.53, 0.47]\n[fluid]\n\
+                particle_spacing = 0.05\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.52, 0.53, 0.47]\n";
+    let points = positions(&parse(text).expect("valid"));
+    let volume = points.len() as f64 * 0.05_f64.powi(3) / (0.52 * 0.53 * 0.47);
+    // Rounding all lengths down gives 0.869.
+    assert!((0.95..=1.0).contains(&volume), "{volume}");
 }

@@ -7,33 +7,33 @@
 //! removed at each of its maxima (dynamic relaxation, Otter 1966). Only pressure above zero acts, so that free surfaces
 //! stay free. The fluid keeps its number of particles: fluid that is too dense grows.
 //!
+//! *Bodies in blocks.* Blocks are first [packed around bodies](around_bodies), which also closes gaps.
+//!
 //! *Where the density is integrated*, a body exerts no pressure at the start, however close the particles are, and the
 //! fluid may start at its surface. Only particles farther than the support radius from bodies count there.
 
-use glam::{Vec3, Vec4};
+mod around_bodies;
+mod relaxation;
+
+use glam::Vec3;
 use serde::Serialize;
-use splashdown_gpu::{CpuExecutor, block_on};
 use splashdown_io::Particles;
 use web_time::Instant;
 
-use super::Simulation;
-use crate::bodies::{Body, LoadedBody};
-use crate::scene::{DensityMode, InitialPressure, Method, NegativePressure, Scene, SurfaceTension};
-use crate::state::CARRIED;
+use crate::bodies::LoadedBody;
+use crate::scene::Scene;
 use crate::{SimulationError, sample};
+use relaxation::Relaxation;
 
 /// The largest density error that is left as it is, over the rest density.
 pub(crate) const TOLERANCE: f32 = 0.02;
-/// The density error at which the relaxation ends, over the rest density.
-const TARGET: f32 = 0.5 * TOLERANCE;
+/// The same for fluid that was packed around bodies: below the tolerance, because the weight of the fluid moves the layers
+/// of a summed density closer together afterwards.
+const PACKED_TOLERANCE: f32 = 0.75 * TOLERANCE;
 /// The name of the task for reports of progress.
 const TASK: &str = "initial packing";
 /// Maximum number of rounds.
 pub(super) const MAX_ROUNDS: u32 = 200;
-/// Rounds without progress after which the relaxation ends.
-const PATIENCE: u32 = 40;
-/// Steps per round.
-const STEPS: f32 = 4.0;
 
 /// The density of particles at the start, summed over their neighbours, walls and bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -113,13 +113,27 @@ pub(super) fn relax(
     let mut relaxation = Relaxation::new(scene, &first, bodies)?;
     let before = relaxation.density(&first)?;
     let mut packing = Packing { before, after: None, rounds: 0, moved: 0.0, seconds: 0.0 };
-    if before.excess > TOLERANCE && most_rounds > 0 {
-        let (positions, after) =
-            relaxation.run(first.clone(), before, most_rounds, &mut packing.rounds, progress)?;
+    if most_rounds > 0 {
+        let half = |part: f32| progress(TASK, 0.5 * part);
+        packing.rounds = around_bodies::pack(scene, &mut particles.positions, bodies, &half)?;
+    }
+    let (mut density, packed) = (before, packing.rounds > 0);
+    if packed {
+        relaxation = Relaxation::new(scene, &particles.positions, bodies)?;
+        density = relaxation.density(&particles.positions)?;
+    }
+    let limit = if packed { PACKED_TOLERANCE } else { TOLERANCE };
+    if density.excess > limit && most_rounds > 0 {
+        let positions = std::mem::take(&mut particles.positions);
+        let rest = |part: f32| progress(TASK, if packed { 0.5 + 0.5 * part } else { part });
+        (particles.positions, density) =
+            relaxation.run(positions, density, most_rounds, &mut packing.rounds, &rest)?;
+    }
+    if packing.rounds > 0 {
         let moved = |(a, b): (&[f32; 3], &[f32; 3])| Vec3::from(*a).distance(Vec3::from(*b));
-        packing.moved = first.iter().zip(&positions).map(moved).fold(0.0, f32::max);
-        packing.after = Some(after);
-        particles.positions = positions;
+        packing.moved = first.iter().zip(&particles.positions).map(moved).fold(0.0, f32::max);
+        packing.after = Some(density);
+        progress(TASK, 1.0);
     }
     packing.seconds = begun.elapsed().as_secs_f32();
     Ok(Some(packing))
@@ -130,150 +144,4 @@ pub(super) fn is_lattice(scene: &Scene) -> bool {
     let fluid = &scene.fluid;
     let is_alone = scene.bodies.is_empty() && scene.emitters.is_empty();
     is_alone && sample::has_blocks_only(fluid) && fluid.blocks.len() < 2
-}
-
-/// An estimate of the completed part of a relaxation in [0, 1]: of the rounds, or of the way to the target, whichever is
-/// farther. Errors fall by a factor per round.
-fn completed_part(rounds: u32, most_rounds: u32, before: f32, now: f32) -> f32 {
-    let way = (before / now.max(TARGET)).ln() / (before / TARGET).ln();
-    way.max(rounds as f32 / most_rounds.max(1) as f32).clamp(0.0, 1.0)
-}
-
-/// The fluid of a scene without gravity.
-struct Relaxation {
-    simulation: Simulation,
-    /// Whether a particle counts, if not all do.
-    counts: Option<Vec<bool>>,
-}
-
-impl Relaxation {
-    fn new(scene: &Scene, positions: &[[f32; 3]], bodies: &[LoadedBody]) -> Result<Self, SimulationError> {
-        let still = without_motion(scene);
-        let still_bodies: Vec<LoadedBody> = bodies.iter().map(LoadedBody::at_rest).collect();
-        let particles =
-            Particles::from_positions(positions.to_vec()).with_ids((0..positions.len() as u32).collect());
-        let executor = CpuExecutor::new().into();
-        let simulation =
-            block_on(Simulation::with_bodies(&still, executor, &particles, still_bodies, CARRIED))?;
-        let is_integrated =
-            scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity;
-        let counts = (is_integrated && !bodies.is_empty()).then(|| {
-            let reach = scene.solver.support_radius(scene.fluid.particle_spacing);
-            sample::far_from(bodies, positions, reach)
-        });
-        Ok(Self { simulation, counts })
-    }
-
-    /// The densities of the particles, whose positions are `positions`.
-    fn density(&mut self, positions: &[[f32; 3]]) -> Result<InitialDensity, SimulationError> {
-        let particles = self.simulation.particles()?;
-        let rest = self.simulation.params().rest_density;
-        let counts = |i: &usize| self.counts.as_ref().is_none_or(|counts| counts[*i]);
-        let densities = &particles.densities;
-        let sum: f64 = densities.iter().map(|&density| f64::from(density)).sum();
-        let densest = (0..densities.len().min(positions.len()))
-            .filter(counts)
-            .max_by(|&a, &b| densities[a].total_cmp(&densities[b]));
-        let (max, place) = densest.map_or((rest, [0.0; 3]), |i| (densities[i], positions[i]));
-        Ok(InitialDensity {
-            mean: (sum / densities.len().max(1) as f64) as f32,
-            max,
-            place,
-            excess: max / rest - 1.0,
-        })
-    }
-
-    /// Relaxes the particles; returns the best positions and their density.
-    fn run(
-        &mut self,
-        first: Vec<[f32; 3]>,
-        before: InitialDensity,
-        most_rounds: u32,
-        rounds: &mut u32,
-        progress: &(dyn Fn(&str, f32) + Sync),
-    ) -> Result<(Vec<[f32; 3]>, InitialDensity), SimulationError> {
-        let (mut best, mut least) = (first, before);
-        let (mut energy, mut since) = (0.0_f64, 0);
-        let complete = |rounds: u32, excess: f32| completed_part(rounds, most_rounds, before.excess, excess);
-        progress(TASK, 0.0);
-        while *rounds < most_rounds && since < PATIENCE && least.excess > TARGET {
-            *rounds += 1;
-            let duration = STEPS * self.simulation.dt();
-            let stats = self.simulation.advance(duration)?;
-            let particles = self.simulation.particles()?;
-            if stats.escaped > 0 || particles.len() != best.len() {
-                break;
-            }
-            let density = self.density(&particles.positions)?;
-            since += 1;
-            if density.excess < least.excess {
-                if density.excess < 0.98 * least.excess {
-                    since = 0;
-                }
-                (best, least) = (particles.positions, density);
-            }
-            let squares = particles.velocities.iter().map(|v| f64::from(Vec3::from(*v).length_squared()));
-            let now = squares.sum::<f64>();
-            if now < energy {
-                self.stop()?;
-                energy = 0.0;
-            } else {
-                energy = now;
-            }
-            progress(TASK, complete(*rounds, least.excess));
-        }
-        progress(TASK, 1.0);
-        Ok((best, least))
-    }
-
-    /// Sets all velocities to zero.
-    fn stop(&mut self) -> Result<(), SimulationError> {
-        let velocities = self.simulation.fields.velocities;
-        let mut values: Vec<Vec4> = block_on(self.simulation.executor.fetch(velocities))?;
-        values.iter_mut().for_each(|v| *v = Vec4::new(0.0, 0.0, 0.0, v.w));
-        Ok(self.simulation.executor.write(velocities, &values)?)
-    }
-}
-
-/// The scene at rest: only the pressure of its particles acts.
-fn without_motion(scene: &Scene) -> Scene {
-    let mut still = scene.clone();
-    still.built = Default::default();
-    // The speed of sound sets the scale of the time only.
-    still.solver.sound_speed = Some(10.0);
-    still.solver.stiffness = None;
-    still.gravity = Vec3::ZERO;
-    still.domain.oscillation = None;
-    (still.emitters, still.sinks, still.probes) = (Vec::new(), Vec::new(), Vec::new());
-    // The particles are given.
-    (still.fluid.meshes, still.fluid.files) = (Vec::new(), Vec::new());
-    still.fluid.initial_pressure = InitialPressure::Zero;
-    still.fluid.material.viscosity = 1e-6;
-    if still.solver.method == Method::Dfsph {
-        still.solver.method = Method::Wcsph;
-    }
-    still.solver.density = DensityMode::Summation;
-    still.solver.cfl_factor = still.solver.cfl_factor.min(0.3);
-    still.solver.negative_pressure = NegativePressure::Clamp;
-    still.solver.surface_tension = SurfaceTension::None;
-    still.solver.artificial_viscosity = 0.1;
-    still.solver.wall_friction = 0.0;
-    (still.solver.max_dt, still.solver.min_dt) = (1.0, 1e-9);
-    for body in &mut still.bodies {
-        body.motion = crate::scene::Motion::Static;
-        (body.friction, body.adhesion) = (0.0, 0.0);
-    }
-    still
-}
-
-impl LoadedBody {
-    /// The body at its present pose, without motion.
-    fn at_rest(&self) -> Self {
-        let mut still = self.clone();
-        still.state.kind = Body::STATIC;
-        (still.state.velocity, still.state.angular_velocity) = (Vec3::ZERO, Vec3::ZERO);
-        (still.state.friction, still.state.adhesion) = (0.0, 0.0);
-        still.script = None;
-        still
-    }
 }
