@@ -149,3 +149,11 @@ pub(crate) fn check_radius(radius: f32) -> Result<(), RenderError> {
         allowed: "a finite number above 0",
     })
 }
+
+/// Refuses times of exposure that are negative or not finite.
+pub(crate) fn check_shutter(what: &'static str, shutter: f32) -> Result<(), RenderError> {
+    if shutter >= 0.0 && shutter.is_finite() {
+        return Ok(());
+    }
+    Err(RenderError::Value { what, given: format!("{shutter} s"), allowed: "a finite number of at least 0" })
+}

@@ -152,8 +152,9 @@ impl<'a> Frame<'a> {
         globals.sample_count = quality.samples;
         globals.shutter_time = quality.time(sample);
         if quality.shutter > 0.0 {
-            // The samples move the droplets.
+            // The samples move droplets and foam.
             globals.droplet_shutter = 0.0;
+            globals.foam_shutter = 0.0;
         }
         (globals.water_root, globals.body_root) = meshes.roots();
         Ok(globals)
@@ -165,6 +166,7 @@ impl<'a> Frame<'a> {
         let usual = Sky::day().on_floor(Vec3::from(Frame::SUN).normalize_or_zero());
         let daylight = self.sky.on_floor(sun) / usual;
         globals.bounced = (BOUNCED * daylight).into();
+        globals.foam_light = self.sky.on_foam(sun).into();
         if let Some(floor) = &self.floor {
             floor.fill(globals)?;
             globals.bounced = (BOUNCED * daylight * floor.relative()).into();

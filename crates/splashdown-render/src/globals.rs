@@ -64,6 +64,8 @@ pub(crate) struct Globals {
     pub droplet_shutter: f32,
     pub water_root: u32,
     pub body_root: u32,
+    pub foam_light: [f32; 3],
+    pub foam_shutter: f32,
     pub ray_shift: [f32; 3],
     pub linear_output: u32,
     pub glass: [u32; 4],
@@ -124,7 +126,7 @@ mod tests {
             picture_size line_width particle_radius shadow_absorption shadow_particle_path quantity range_low
             range_scale refractive_index liquid_absorption liquid_scattering liquid_colour liquid_roughness
             splat_radius thickness_radius particle_thickness slice_quantity slice_axis slice_position slice_support_radius
-            slice_full slice_low slice_scale splat_margin foam_radius droplet_radius droplet_shutter water_root body_root ray_shift linear_output glass
+            slice_full slice_low slice_scale splat_margin foam_radius droplet_radius droplet_shutter water_root body_root foam_light foam_shutter ray_shift linear_output glass
             zenith floor_pattern horizon cloud_cover clouds cloud_opacity sun_light ray_offset sky_light
             contact_distance glow sample haze sample_count hills shutter_time floor_tint glass_thickness bounced
             sunlit_panes edges);

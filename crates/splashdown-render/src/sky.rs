@@ -133,6 +133,11 @@ impl Sky {
         Vec3::from(self.sun_light) * sun.y + Vec3::from(self.sky_light)
     }
 
+    /// Light from white foam that lies flat, whose bubbles take a part of the sunlight from each other.
+    pub(crate) fn on_foam(&self, sun: Vec3) -> Vec3 {
+        0.86 * Vec3::from(self.sky_light) + 0.62 * sun.y * Vec3::from(self.sun_light)
+    }
+
     /// Checks the values and writes the uniforms.
     pub(crate) fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
         let Sky { zenith, horizon, sun_light, sky_light, glow, haze, hills, clouds, .. } = *self;

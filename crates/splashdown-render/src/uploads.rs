@@ -68,8 +68,7 @@ impl UploadedFoam {
     ///
     /// * `positions`: metres.
     /// * `lifetimes`: remaining lifetimes in seconds; if empty, unlimited.
-    /// * `ids`: particles with different ids differ slightly in size; if empty, the index is the
-    ///   id.
+    /// * `ids`: particles with different ids differ in size and shape; if empty, the index is the id.
     /// * `kinds`: 0 spray, 1 foam, 2 bubble.
     ///
     /// # Errors

@@ -93,8 +93,6 @@ fn spray_is_a_round_group_of_drops_and_foam_lies_flat() {
     let mut drawn =
         |count: usize, kind| extent(&draw(&mut harness, &vec![[0.0; 3]; count], 3.0, kind, frame), &empty);
     // Seen from the side. Each group is another one; together they fill a circle or an ellipse.
-    let ([width, height], count) = drawn(1, SPRAY);
-    assert!(width.min(height) > 5 && 2 * count < width * height, "{count} of {width} x {height} pixels");
     let ([width, height], _) = drawn(60, SPRAY);
     assert!(width > 10 && height.abs_diff(width) < width / 3, "{width} x {height}");
     let ([width, height], _) = drawn(60, FOAM);
@@ -102,6 +100,125 @@ fn spray_is_a_round_group_of_drops_and_foam_lies_flat() {
     // Control: a bubble is a disc.
     let ([width, height], count) = drawn(1, BUBBLE);
     assert!(height.abs_diff(width) < 2 && 2 * count > width * height, "{count} of {width} x {height}");
+}
+
+/// Light per pixel, row by row, that a picture has more than another. Blending is linear in it.
+fn added_light(a: &Picture, b: &Picture) -> Vec<f32> {
+    let linear = |byte: u8| {
+        let c = f32::from(byte) / 255.0;
+        if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    };
+    let green = |picture: &Picture| -> Vec<f32> {
+        picture.rgba.chunks_exact(4).map(|pixel| linear(pixel[1])).collect()
+    };
+    green(a).into_iter().zip(green(b)).map(|(a, b)| a - b).collect()
+}
+
+/// The groups of connected pixels with more light than `limit`: their numbers of pixels, the largest first.
+fn spots(light: &[f32], limit: f32) -> Vec<usize> {
+    let width = SIZE[0] as usize;
+    let mut is_bright: Vec<bool> = light.iter().map(|&light| light > limit).collect();
+    let mut found = Vec::new();
+    for start in 0..is_bright.len() {
+        let (mut waiting, mut count) = (vec![start], 0);
+        while let Some(at) = waiting.pop() {
+            if !std::mem::take(&mut is_bright[at]) {
+                continue;
+            }
+            count += 1;
+            // Groups are not at the border of the picture.
+            waiting.extend([at - 1, at + 1, at - width, at + width]);
+        }
+        found.extend((count > 0).then_some(count));
+    }
+    found.sort_unstable_by(|a, b| b.cmp(a));
+    found
+}
+
+#[test]
+fn the_groups_of_spray_and_foam_differ_and_have_few_large_members() {
+    let Some(mut harness) = common::harness() else { return };
+    let behind = backdrop(&harness);
+    let frame = frame().with_particles(dark(&behind, 4.0));
+    let empty = harness.draw(SIZE, &frame);
+    let ids: Vec<u32> = (0..16).collect();
+    for kind in [SPRAY, FOAM] {
+        let mut numbers = std::collections::BTreeMap::new();
+        let (mut largest, mut next) = (0, 0);
+        for &id in &ids {
+            let foam = UploadedFoam::new(&harness.device, &[[0.0; 3]], &[3.0], &[id], &[kind]).unwrap();
+            let picture = harness.draw(SIZE, &frame.with_foam(DrawnFoam::new(foam.buffers(), 0.7)));
+            let spots = spots(&added_light(&picture, &empty), 0.15);
+            *numbers.entry(spots.len()).or_insert(0) += 1;
+            largest += spots[0];
+            next += spots.get(1).copied().unwrap_or(0);
+        }
+        // Equal members have areas that differ by a few pixels, and are equally many in each group.
+        assert!(2 * largest > 3 * next, "kind {kind}: {largest} and {next} pixels");
+        assert!(numbers.len() >= 3, "kind {kind}: groups by the number of spots: {numbers:?}");
+    }
+}
+
+#[test]
+fn moving_particles_are_streaks_along_their_way() {
+    let Some(mut harness) = common::harness() else { return };
+    let behind = backdrop(&harness);
+    let frame = frame().with_particles(dark(&behind, 4.0));
+    let empty = harness.draw(SIZE, &frame);
+    let pixels_per_metre = 80.0 / (20.0_f32.to_radians().tan() * 4.0);
+    for kind in [SPRAY, FOAM, BUBBLE] {
+        let mut drawn = |velocity: [f32; 3]| {
+            // Many, so that little light is rounded away.
+            let n = 12;
+            let (places, lifetimes) = (vec![[0.0; 3]; n], vec![3.0; n]);
+            let device = &harness.device;
+            let ids = vec![5; n];
+            let foam =
+                UploadedFoam::moving(device, &places, &vec![velocity; n], &lifetimes, &ids, &vec![kind; n]);
+            let foam = foam.unwrap();
+            let foam = DrawnFoam::new(foam.buffers(), RADIUS).with_shutter(0.05);
+            let picture = harness.draw(SIZE, &frame.with_foam(foam));
+            extent(&picture, &empty).0
+        };
+        let [width, height] = drawn([0.0; 3]);
+        // 0.6 m in 0.05 s.
+        let [longer, as_high] = drawn([12.0, 0.0, 0.0]);
+        let way = 0.6 * pixels_per_metre;
+        assert!((longer as f32 - width as f32 - way).abs() < 0.35 * way, "kind {kind}: {width}, {longer}");
+        assert!(as_high.abs_diff(height) <= 4, "kind {kind}: {height}, {as_high}");
+        // Control: motion along the view is not visible.
+        let [same, _] = drawn([0.0, 0.0, 12.0]);
+        assert!(same.abs_diff(width) <= 1, "kind {kind}: {width}, {same}");
+    }
+}
+
+#[test]
+fn a_streak_has_the_light_of_the_particle_at_rest() {
+    let Some(mut harness) = common::harness() else { return };
+    let behind = backdrop(&harness);
+    let frame = frame().with_particles(dark(&behind, 4.0));
+    let empty = harness.draw(SIZE, &frame);
+    // Single particles: the opacities of several do not add.
+    let mut light = |kind: u32, speed: f32| -> f32 {
+        (0..8)
+            .map(|id| {
+                let velocities = [[0.8 * speed, 0.6 * speed, 0.0]];
+                let device = &harness.device;
+                let foam = UploadedFoam::moving(device, &[[0.0; 3]], &velocities, &[3.0], &[id], &[kind]);
+                let foam = foam.unwrap();
+                let foam = DrawnFoam::new(foam.buffers(), 0.4).with_shutter(0.05);
+                let picture = harness.draw(SIZE, &frame.with_foam(foam));
+                added_light(&picture, &empty).into_iter().filter(|light| *light > 0.0).sum::<f32>()
+            })
+            .sum()
+    };
+    for kind in [SPRAY, FOAM] {
+        let rest = light(kind, 0.0);
+        let slow = light(kind, 2.0) / rest;
+        let fast = light(kind, 8.0) / rest;
+        // Members of a group hide one another less where they are thinner; faint parts are rounded away.
+        assert!((slow - 1.0).abs() < 0.15 && (fast - 1.0).abs() < 0.25, "kind {kind}: {slow}, {fast}");
+    }
 }
 
 #[test]
@@ -117,7 +234,8 @@ fn particles_below_a_pixel_do_not_vanish_or_flicker() {
         let mut brightness = |count: usize, radius: f32, shift: f32| {
             let places = vec![[shift * pixel, 0.6 * shift * pixel, 0.0]; count];
             let (lifetimes, kinds) = (vec![3.0; count], vec![kind; count]);
-            let foam = UploadedFoam::new(&harness.device, &places, &lifetimes, &[], &kinds).unwrap();
+            let foam =
+                UploadedFoam::new(&harness.device, &places, &lifetimes, &vec![3; count], &kinds).unwrap();
             let picture = harness.draw(SIZE, &frame.with_foam(DrawnFoam::new(foam.buffers(), radius)));
             let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
             let sum: i32 = pixels.map(|place| brighter(&picture, &empty, place).max(0)).sum();
@@ -179,6 +297,32 @@ fn the_surface_does_not_cut_foam() {
     assert!(brighter(&foam, &alone, MIDDLE) > 100);
     let spray = draw(&mut harness, &sunk, 3.0, SPRAY, with_liquid);
     assert!(brighter(&spray, &alone, MIDDLE).abs() < 6);
+}
+
+#[test]
+fn a_droplet_does_not_hide_spray_behind_it() {
+    let Some(mut harness) = common::harness() else { return };
+    let droplet = UploadedDroplets::new(&harness.device, &[[0.0; 3]], &[]).unwrap();
+    let drawn = DrawnDroplets::new(droplet.buffers(), 0.5, Liquid::water());
+    let with_droplet = frame().with_droplets(drawn);
+    let alone = harness.draw(SIZE, &with_droplet);
+    let both = draw(&mut harness, &[[0.0, 0.0, -1.5]; 4], 3.0, SPRAY, with_droplet);
+    let (_, changed) = extent(&both, &alone);
+    assert!(changed > 20, "{changed} pixels");
+}
+
+#[test]
+fn invalid_exposures_are_refused() {
+    let Some(mut harness) = common::harness() else { return };
+    let foam = UploadedFoam::new(&harness.device, &[[0.0; 3]], &[], &[], &[SPRAY]).unwrap();
+    let mut target = Offscreen::new(&harness.device, &harness.queue, SIZE).unwrap();
+    for (shutter, valid) in
+        [(0.0, true), (0.1, true), (-1.0, false), (f32::NAN, false), (f32::INFINITY, false)]
+    {
+        let drawn = DrawnFoam::new(foam.buffers(), RADIUS).with_shutter(shutter);
+        let result = target.render_to_rgba(&mut harness.renderer, &frame().with_foam(drawn));
+        assert_eq!(result.is_ok(), valid, "a shutter of {shutter} s");
+    }
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn data(scene: &Scene, run: &Path, frame: u32) -> Result<Value, Box<dyn Error>> 
             "up": camera.up,
             "field_of_view": camera.field_of_view_deg,
             // As droplets of a picture with `--quality standard`; everything is in focus there.
-            "shutter": 0.5 / scene.frame_rate,
+            "shutter": appearance::shutter(scene),
         },
         "domain": { "min": empty.domain.min, "max": empty.domain.max, "closed": empty.domain.closed },
         "has_glass": empty.tank == Tank::Glass,

@@ -6,8 +6,8 @@ use splashdown::scene::{
 };
 use splashdown::surface::droplet_radius;
 use splashdown_render::{
-    Camera, Colouring, Domain, DrawnDroplets, DropletBuffers, Floor, FloorPattern, Frame, Liquid, Quality,
-    Quantity, Sky, Tank, missing_characters,
+    Camera, Colouring, Domain, DrawnDroplets, DrawnFoam, DropletBuffers, Floor, FloorPattern, FoamBuffers,
+    Frame, Liquid, Quality, Quantity, Sky, Tank, missing_characters,
 };
 
 /// The empty picture of the scene: its domain, its sky and its floor.
@@ -160,15 +160,23 @@ pub fn quality(scene: &Scene, quality: PictureQuality) -> Option<Quality> {
     }
 }
 
-/// Time in seconds for which the shutter is open: half a frame of the scene, which may be shown in slow motion.
-fn shutter(scene: &Scene) -> f32 {
-    0.5 / scene.frame_rate
+/// Time in seconds for which the shutter is open: half a frame of the scene, but no longer than water at the largest
+/// expected speed takes for half a particle spacing. Splashes are photographed with short exposures, because drops that
+/// move by several diameters look like rods; a droplet has a diameter of 1.24 spacings.
+pub fn shutter(scene: &Scene) -> f32 {
+    let passing = 0.5 * scene.fluid.particle_spacing / Derived::new(scene).reference_speed;
+    passing.min(0.5 / scene.frame_rate)
 }
 
 /// Droplets with the volume of a particle each, blurred by their motion.
 pub fn droplets<'a>(scene: &Scene, buffers: DropletBuffers<'a>, liquid: Liquid) -> DrawnDroplets<'a> {
     DrawnDroplets::new(buffers, droplet_radius(scene.fluid.particle_spacing), liquid)
         .with_shutter(shutter(scene))
+}
+
+/// Foam, spray and bubbles, blurred by their motion.
+pub fn foam<'a>(scene: &Scene, buffers: FoamBuffers<'a>) -> DrawnFoam<'a> {
+    DrawnFoam::new(buffers, scene.fluid.particle_radius()).with_shutter(shutter(scene))
 }
 
 /// Colours by this quantity. The range is the scene's if it sets one for this quantity, else the expected one. It is
@@ -196,6 +204,22 @@ mod tests {
              [[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.5, 0.5]\n[picture]\n{picture}\n"
         );
         Scene::parse(&text, "cube.toml").unwrap_or_else(|errors| panic!("{errors}"))
+    }
+
+    #[test]
+    fn the_exposure_is_short_for_fast_drops_and_at_most_half_a_frame() {
+        let mut scene = scene("");
+        let speed = Derived::new(&scene).reference_speed;
+        scene.frame_rate = 30.0;
+        let fast = shutter(&scene);
+        assert!((fast * speed / scene.fluid.particle_spacing - 0.5).abs() < 1e-4, "{fast} s at {speed} m/s");
+        // Control: with a film's half frame, drops of this scene move by more than a spacing.
+        assert!(0.5 / scene.frame_rate * speed > scene.fluid.particle_spacing / 2.0);
+        // A finer resolution has a shorter exposure, and many frames a second limit it.
+        scene.fluid.particle_spacing *= 0.5;
+        assert!(shutter(&scene) < 0.6 * fast);
+        scene.frame_rate = 5000.0;
+        assert_eq!(shutter(&scene), 1e-4);
     }
 
     #[test]

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::Gpu;
 use splashdown_render::{
-    Axis, Camera, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface, PassTime,
-    PlacedBody, RenderError, Renderer, SurfaceStyle, UploadedBodies,
+    Axis, Camera, DrawnLiquidParticles, DrawnParticles, DrawnSlice, DrawnSurface, PassTime, PlacedBody,
+    RenderError, Renderer, SurfaceStyle, UploadedBodies,
 };
 use splashdown_run::appearance;
 
@@ -84,7 +84,7 @@ impl Picture {
         let mut frame = appearance::empty_frame(scene, camera);
         frame.caption = caption.as_deref();
         frame.bodies = self.placed.as_ref().map(|placed| placed.uploaded.buffers());
-        frame.foam = drawn.foam().map(|buffers| DrawnFoam::new(buffers, radius));
+        frame.foam = drawn.foam().map(|buffers| appearance::foam(scene, buffers));
         match (look.mode, drawn.mesh()) {
             (DisplayMode::Particles, _) => {
                 frame.particles = Some(DrawnParticles::new(drawn.particles(), radius, colouring));

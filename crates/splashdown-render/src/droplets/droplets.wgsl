@@ -1,15 +1,8 @@
 // Droplets as spheres that are blurred by their motion. Needs globals.wgsl, environment.wgsl, optics.wgsl, sphere.wgsl, and
 // plain.wgsl or traced.wgsl: two rows per droplet, position and velocity; the fourth components are not read.
 
-// 1: only pixels that a droplet covers all the time; 0: only the others.
-override OPAQUE: u32 = 1u;
-
-// Times at which a streak is shaded.
-const TIMES = 3;
 // Smallest radius in pixels. Smaller droplets would flicker; they are enlarged and made fainter.
 const MIN_RADIUS = 0.7;
-// Coverage from which a pixel is opaque.
-const WHOLE = 0.99;
 
 struct Varying {
     @builtin(position) position: vec4f,
@@ -17,7 +10,28 @@ struct Varying {
     @location(1) ray: vec3f,           // from the eye
     @location(2) @interpolate(flat) centre: vec4f,  // xyz: relative to the eye, w: distance
     @location(3) @interpolate(flat) along: vec4f,   // xyz: unit vector of the motion, w: half the streak in radii
-    @location(4) @interpolate(flat) size: vec3f,    // radius in m, width of a pixel in radii, opacity
+    // Radius in m, width of a pixel in radii, opacity, and half the axis along the motion in radii.
+    @location(4) @interpolate(flat) size: vec4f,
+    @location(5) @interpolate(flat) waves: vec2f,   // phase, slope
+}
+
+struct Shape {
+    radius: f32,     // of the sphere with the volume of the droplet, over that of a particle
+    length: f32,     // half the axis along the motion, over that radius
+    phase: f32,      // of the oscillation
+    moving: f32,     // 0: at rest, 1: fast
+}
+
+// Droplets of a splash differ in size, and oscillate. A droplet that flies keeps its horizontal velocity, so
+// that a smooth function of it is a property of the droplet. The mean volume is that of a particle.
+fn shape_of(place: vec3f, velocity: vec3f) -> Shape {
+    // The speed of falling by a radius is the unit.
+    let unit = sqrt(10.0 * globals.droplet_radius);
+    let moving = dot(velocity, velocity) / (unit * unit + dot(velocity, velocity));
+    let drift = 4.0 / unit * velocity.xz;
+    let volume = sin(drift.x + 0.7 * drift.y + 1.7 * sin(1.3 * drift.y - 0.8 * drift.x));
+    let phase = dot(place, vec3f(0.11, 0.13, 0.09)) / globals.droplet_radius + drift.x - drift.y;
+    return Shape(pow(1.0 + 0.8 * moving * volume, 1.0 / 3.0), 1.0 + 0.16 * moving * sin(phase), phase, moving);
 }
 
 @vertex
@@ -27,7 +41,9 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let centre = place - globals.eye;
     let distance = length(centre);
     let pixel = globals.pixel_angle * distance;
-    let radius = max(globals.droplet_radius, MIN_RADIUS * pixel);
+    let shape = shape_of(place, velocity);
+    let own_radius = shape.radius * globals.droplet_radius;
+    let radius = max(own_radius, MIN_RADIUS * pixel);
     var out: Varying;
     // Also false for NaN and infinity, and near the eye: these are not drawn.
     if !(distance > 1.1 * radius && distance < 1e15 && dot(velocity, velocity) < 1e20) {
@@ -46,13 +62,14 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let corner = (0xDA4u >> (2u * (index % 6u))) & 3u;
     let side = vec2f(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
     // One extra pixel on every side for partially covered pixels.
-    let reach = 1.0 + pixel / radius;
-    out.across = side * vec2f(reach + streak, reach);
+    let width = inverseSqrt(shape.length);
+    out.across = side * (vec2f(shape.length + streak, width) + pixel / radius);
     out.ray = centre + radius * (along * out.across.x + cross(along, axis) * out.across.y);
     out.centre = vec4f(centre, distance);
     out.along = vec4f(along, streak);
-    let shrunk = globals.droplet_radius / radius;
-    out.size = vec3f(radius, pixel / radius, shrunk * shrunk);
+    let shrunk = own_radius / radius;
+    out.waves = vec2f(shape.phase, 0.35 * shape.moving);
+    out.size = vec4f(radius, pixel / radius, shrunk * shrunk, shape.length);
     out.position = globals.clip_from_world * vec4f(globals.eye + out.ray, 1.0);
     return out;
 }
@@ -84,15 +101,18 @@ struct Output {
 @fragment
 fn fragment_main(in: Varying) -> Output {
     let pixel = in.size.y;
+    // An ellipsoid of the volume of the sphere: half the axis along the motion, and the others.
+    let axes = vec3f(in.size.w, vec2f(inverseSqrt(in.size.w)));
     // The disc covers this place from `first` to `last`, in radii of its way; a disc at rest moves by a pixel, which
     // smooths its outline.
     let streak = max(in.along.w, 0.5 * pixel);
-    let chord = sqrt(max(1.0 - in.across.y * in.across.y, 0.0));
+    let height = in.across.y / axes.y;
+    let chord = axes.x * sqrt(max(1.0 - height * height, 0.0));
     let first = max(-streak, in.across.x - chord);
     let last = min(streak, in.across.x + chord);
-    let edge = clamp((1.0 - abs(in.across.y)) / pixel + 0.5, 0.0, 1.0);
+    let edge = clamp((axes.y - abs(in.across.y)) / pixel + 0.5, 0.0, 1.0);
     let coverage = clamp((last - first) / (2.0 * streak), 0.0, 1.0) * edge * in.size.z;
-    let is_drawn = coverage > 0.004 && (coverage >= WHOLE) == (OPAQUE == 1u);
+    let is_drawn = coverage > 0.004;
     if !is_drawn {
         discard;
     }
@@ -100,24 +120,25 @@ fn fragment_main(in: Varying) -> Output {
     let axis = in.centre.xyz / in.centre.w;
     let beside = cross(in.along.xyz, axis);
     let towards = normalize(in.ray);
-    // No turn where nothing is drawn: software drivers shade discarded pixels too.
-    let times = select(0, select(1, TIMES, last - first > 0.5), is_drawn);
+    // The light at the middle of that time stands for the mean: several sharp images of sun and horizon would show.
+    let shift = 0.5 * (first + last) * select(0.0, 1.0, in.along.w > 0.0);
+    var disc = vec2f(in.across.x - shift, in.across.y) / axes.xy;
+    disc *= min(1.0, 0.98 * inverseSqrt(max(dot(disc, disc), 1e-6)));
+    let rise = sqrt(1.0 - dot(disc, disc));
+    let local = vec3f(disc, rise);
+    let frame = mat3x3f(in.along.xyz, beside, -axis);
+    let waves = in.waves.y * sin(2.6 * disc.yx + in.waves.x * vec2f(1.0, 1.7));
+    let normal = frame * normalize(local / axes + vec3f(waves, 0.0));
+    let place = in.centre.xyz + radius * (frame * (local * axes) + in.along.xyz * shift);
     var light = vec3f(0.0);
-    var nearest = 0.0;
-    for (var i = 0; i < times; i++) {
-        let time = mix(first, last, (f32(i) + 0.5) / f32(times));
-        let shift = time * select(0.0, 1.0, in.along.w > 0.0);
-        var disc = vec2f(in.across.x - shift, in.across.y);
-        disc *= min(1.0, 0.98 * inverseSqrt(max(dot(disc, disc), 1e-6)));
-        let rise = sqrt(1.0 - dot(disc, disc));
-        let normal = in.along.xyz * disc.x + beside * disc.y - axis * rise;
-        let place = in.centre.xyz + radius * (normal + in.along.xyz * shift);
-        light += droplet_light(globals.eye + place, normal, towards, radius);
-        nearest = max(nearest, rise);
+    // A loop without a turn where nothing is drawn: software drivers shade discarded pixels too, and both sides of a
+    // branch.
+    for (var i = select(1, 0, is_drawn); i < 1; i++) {
+        light = droplet_light(globals.eye + place, normal, towards, radius);
     }
     var output: Output;
-    output.colour = vec4f(present(light / f32(times)), select(coverage, 1.0, OPAQUE == 1u));
-    let front = in.ray * (1.0 - nearest * radius / in.centre.w);
+    output.colour = vec4f(present(light), coverage);
+    let front = in.ray * (1.0 - rise * axes.z * radius / in.centre.w);
     output.depth = depth_of(dot(front, globals.forward));
     return output;
 }

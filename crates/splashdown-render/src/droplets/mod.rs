@@ -4,14 +4,18 @@
 //! Every droplet is a quad around the disc that it sweeps while the shutter is open. In the plane through its centre,
 //! with lengths in radii, the disc moves from -l to l along the first axis. It covers a place (a, b) while
 //! |a - t| < sqrt(1 - b^2), so that the fraction of the time, the opacity, is the length of an interval. The shading is
-//! the mean of that of the sphere at some times of the interval.
+//! that of the droplet at the middle of the interval: the ends fade, and the light is even between them.
+//!
+//! *Shape.* Droplets of one size look artificial. The volume of a moving droplet is a smooth function of its horizontal
+//! velocity, which is constant in free flight, with the volume of a particle as the mean. It oscillates between a long and
+//! a flat spheroid as it moves, and its normals are slightly wavy.
 //!
 //! *Shading.* A ray that enters a sphere leaves it at a known place: it is refracted twice there, and shows the
 //! environment upside down. The reflected ray, absorption in between and the highlight of the sun are those of the
 //! surface of the liquid. With traced rays both rays then hit the liquid, the bodies or the environment.
 //!
-//! *Order.* Pixels that a droplet covers all the time are drawn first and write the depth. The others, outlines and
-//! streaks, are blended over the picture afterwards and only test it.
+//! *Order.* Droplets are blended over the picture in the order of the buffer, and test the depth. Foam and spray are
+//! drawn later and cover all droplets: a droplet in front of spray would refract it, but rays do not find spray.
 //!
 //! Droplets smaller than a pixel are enlarged to one pixel and their opacity is reduced accordingly. If the samples of a
 //! traced picture move in time, they move the droplets, and there are no streaks.
@@ -20,11 +24,14 @@
 //! Spheres as triangles in the mesh of the liquid are a hundred times as many vertices, have no motion blur, and look
 //! like facets where they are large.
 //!
+//! Droplets that write their depth hide the spray behind them, and then are dark balls in white spray. The mean of
+//! several times as the shading shows several images of the sun and the horizon in a row.
+//!
 //! # Things we might try
 //! Shadows and caustics of droplets; droplets in reflections and behind other droplets.
 
 use crate::chunks::{Chunk, bind_chunks};
-use crate::error::check_radius;
+use crate::error::{check_radius, check_shutter};
 use crate::globals::Globals;
 use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group_layout};
 use crate::shader::{ENVIRONMENT, GLOBALS, MATTE, OPTICS, REFRACTED, SPHERE, Shader, TRACE};
@@ -82,13 +89,7 @@ impl<'a> DrawnDroplets<'a> {
     pub(crate) fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
         self.buffers.check()?;
         check_radius(self.radius)?;
-        if !(self.shutter >= 0.0 && self.shutter.is_finite()) {
-            return Err(RenderError::Value {
-                what: "the shutter of the droplets",
-                given: format!("{} s", self.shutter),
-                allowed: "a finite number of at least 0",
-            });
-        }
+        check_shutter("the shutter of the droplets", self.shutter)?;
         self.liquid.fill(globals)?;
         globals.droplet_radius = self.radius;
         globals.droplet_shutter = self.shutter;
@@ -96,10 +97,9 @@ impl<'a> DrawnDroplets<'a> {
     }
 }
 
-/// The pipelines of pixels that droplets cover all the time, and of the others.
 #[derive(Debug)]
 pub(crate) struct Droplets {
-    pipelines: [RenderPipeline; 2],
+    pipeline: RenderPipeline,
     layout: BindGroupLayout,
     /// The bind group of the droplets: behind those of the scene.
     group: u32,
@@ -112,18 +112,13 @@ impl Droplets {
         let layout = bind_group_layout(device, "droplets", &[Bind::Storage]);
         let layouts: Vec<&BindGroupLayout> = scene.iter().copied().chain([&layout]).collect();
         let shader = if scene.len() == 3 { TRACED } else { SHADER };
-        let pipelines = [true, false].map(|is_opaque| {
-            let constants = [("OPAQUE", f64::from(u8::from(is_opaque)))];
-            let desc = PipelineDesc {
-                samples,
-                depth: Some(if is_opaque { Depth::TestAndWrite } else { Depth::Test }),
-                blend: (!is_opaque).then_some(OVER),
-                constants: &constants,
-                ..PipelineDesc::new(shader, &layouts, format)
-            };
-            desc.build(device)
-        });
-        Droplets { pipelines, layout, group: scene.len() as u32 }
+        let desc = PipelineDesc {
+            samples,
+            depth: Some(Depth::Test),
+            blend: Some(OVER),
+            ..PipelineDesc::new(shader, &layouts, format)
+        };
+        Droplets { pipeline: desc.build(device), layout, group: scene.len() as u32 }
     }
 
     /// Binds the droplets.
@@ -136,11 +131,9 @@ impl Droplets {
         if chunks.is_empty() {
             return;
         }
-        for pipeline in &self.pipelines {
-            pass.set_pipeline(pipeline);
-            for chunk in chunks {
-                chunk.draw(pass, self.group, 6);
-            }
+        pass.set_pipeline(&self.pipeline);
+        for chunk in chunks {
+            chunk.draw(pass, self.group, 6);
         }
     }
 }

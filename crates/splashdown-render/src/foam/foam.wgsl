@@ -1,5 +1,5 @@
 // Foam and spray as groups of bubbles and drops, and bubbles under water, on white billboards.
-// Needs globals.wgsl, environment.wgsl, sphere.wgsl.
+// Needs globals.wgsl, environment.wgsl.
 
 @group(2) @binding(0) var<storage, read> diffuse: array<vec4u>;
 
@@ -11,26 +11,62 @@ const FOAM = 1u;
 const BUBBLE = 2u;
 // Particles fade out over the last seconds of their lifetime.
 const FADE_TIME = 0.5;
-// Smallest radii of a billboard and of a member of a group, in pixels. Above sqrt(1/2) a disc always
-// contains the middle of a pixel.
-const MIN_BILLBOARD = 1.2;
-const MIN_RADIUS = 0.8;
-// Least foreshortening of foam, which lies in the surface of the liquid.
-const FLATTEST = 0.35;
+// Smallest radii of a group, of its members and of a bubble, in pixels. What is smaller would flicker; it is
+// enlarged and made fainter.
+const MIN_GROUP = 2.0;
+const MIN_MEMBER = 1.0;
+const MIN_BUBBLE = 1.2;
+// Least foreshortening of foam, which lies in the surface of the liquid. Its bubbles stand out of it.
+const FLATTEST = 0.42;
+// Longest way while the shutter is open, in radii of a billboard.
+const LONGEST = 60.0;
 
 struct Varying {
     @builtin(position) position: vec4f,
-    @location(0) across: vec2f,        // length 1 on the outline; turned by a random angle
-    @location(1) @interpolate(flat) appearance: vec3f,    // opacity, variation, kind
-    // Opacity of a member of a group, and one over the square of its radius in radii of the group.
-    @location(2) @interpolate(flat) members: vec2f,
-    @location(3) @interpolate(flat) colour: vec3f,
+    @location(0) across: vec2f,        // in radii of the billboard; the motion is along x
+    // Half the length of the motion, opacity of the veil of drops that are too small to be drawn, and kind.
+    @location(1) @interpolate(flat) appearance: vec3f,
+    @location(2) @interpolate(flat) colour: vec3f,
+    // Members of the group: place, one over the square of the radius, opacity.
+    @location(3) @interpolate(flat) member_0: vec4f,
+    @location(4) @interpolate(flat) member_1: vec4f,
+    @location(5) @interpolate(flat) member_2: vec4f,
+    @location(6) @interpolate(flat) member_3: vec4f,
 }
 
-// Pseudo-random number in [0, 1) from a particle's tag.
-fn random(tag: u32) -> f32 {
-    let mixed = (tag >> 2u) * 2654435769u;
-    return f32(mixed >> 16u) / 65536.0;
+// Pseudo-random bits: the generator PCG (O'Neill 2014) as a hash (Jarzynski and Olano 2020).
+fn random_bits(seed: u32) -> u32 {
+    let state = seed * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+// What remains of the opacity of a disc of a radius that moves by `way` in both directions: the light is spread
+// over a larger area. For the profile (1 - q)^2 of `past`.
+fn thinned(way: f32, radius: f32) -> f32 {
+    return radius / (radius + 2.037 * way);
+}
+
+struct Sizes {
+    billboard: f32,    // m
+    pixel: f32,        // m
+    way: f32,          // m
+}
+
+// A member of a group: `smallest` is the radius in m of the most frequent members.
+fn member(seed: u32, smallest: f32, opaque: f32, sizes: Sizes) -> vec4f {
+    let bits = random_bits(seed);
+    let ranges = vec3u(2047u, 2047u, 1023u);
+    let unit = vec3f(vec3u(bits, bits >> 11u, bits >> 22u) & ranges) / vec3f(ranges);
+    // Many small and few large: the number of members above a radius falls with its square.
+    let own = smallest * inverseSqrt(0.03 + 0.97 * unit.z);
+    let drawn = min(max(own, MIN_MEMBER * sizes.pixel), sizes.billboard);
+    let side = 2.0 * unit.xy - 1.0;
+    // The square onto the circle.
+    let place = side * sqrt(1.0 - 0.5 * side.yx * side.yx) * (1.0 - drawn / sizes.billboard);
+    let opacity = opaque * (own * own) / (drawn * drawn) * thinned(sizes.way, drawn);
+    let ratio = sizes.billboard / drawn;
+    return vec4f(place, ratio * ratio, opacity);
 }
 
 @vertex
@@ -40,95 +76,114 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     particle += vec4f(velocity * globals.shutter_time, 0.0);
     let tag = diffuse[2u * (index / 3u) + 1u].w;
     let kind = tag & 3u;
-    let variation = random(tag);
-    // In particle radii.
-    var size = 1.0;
-    var member = 0.12;
-    var opaque = 0.85;
+    let seed = random_bits(tag >> 2u);
+    let variation = f32(seed >> 16u) / 65536.0;
+    let centre = particle.xyz - globals.eye;
+    let away = length(centre);
+    let axis = centre / away;
+    // Height over width on the screen.
+    let flatness = select(1.0, max(abs(axis.y), FLATTEST), kind == FOAM);
+    // In radii of the particles of the fluid. Many small groups and few large ones.
+    let few = variation * variation;
+    var size = 0.55 + 0.75 * few;
+    var smallest = 0.085;
+    var opaque = 0.9;
+    var veil = 0.02;
     var nearer = 0.0;
     if kind == FOAM {
-        size = 1.2;
-        member = 0.24;
-        opaque = 0.45;
+        size = 0.65 + 0.85 * few;
+        smallest = 0.14;
+        opaque = 0.65;
+        veil = 0.13;
         // The depth offset prevents the surface from cutting the patches in two.
         nearer = 2.5 * globals.foam_radius;
     } else if kind == BUBBLE {
-        size = 0.32;
-        member = 1.0;
-        opaque = 0.30;
+        size = 0.2 * inverseSqrt(0.1 + 0.9 * variation);
+        veil = 0.3;
     }
-    let from_eye = particle.xyz - globals.eye;
-    let away = length(from_eye);
-    // Height over width on the screen.
-    let flatness = select(1.0, max(abs(from_eye.y) / away, FLATTEST), kind == FOAM);
-    // What is below a pixel would flicker; it is enlarged and made fainter.
     let pixel = globals.pixel_angle * away / flatness;
-    let own_radius = size * (0.6 + 0.8 * variation) * globals.foam_radius;
-    let radius = max(own_radius, MIN_BILLBOARD * pixel);
-    let fainter = own_radius * own_radius / (radius * radius);
-    // Also zero for NaN, which would remain in a layer of floats.
-    let opacity = select(0.0, fainter * clamp(particle.w / FADE_TIME, 0.0, 1.0), particle.w > 0.0);
-    var corner = sphere_corner(vec4f(particle.xyz, 0.0), radius, index);
-    if kind == FOAM && corner.centre.w > 0.0 {
-        let axis = corner.centre.xyz / corner.centre.w;
-        let above = normalize(globals.up - dot(globals.up, axis) * axis);
-        let offset = corner.ray - corner.centre.xyz;
-        let place = globals.eye + corner.ray + above * ((flatness - 1.0) * dot(offset, above));
-        corner.position = globals.clip_from_world * vec4f(place, 1.0);
-    }
+    let own_radius = size * globals.foam_radius;
+    let radius = max(own_radius, select(MIN_GROUP, MIN_BUBBLE, kind == BUBBLE) * pixel);
+
+    // The plane of the billboard, and the way of the particle in it while the shutter is open.
+    let u = normalize(cross(axis, globals.up + 0.001 * globals.right));
+    let v = cross(u, axis);
+    let half_way = 0.5 * globals.foam_shutter * vec2f(dot(velocity, u), dot(velocity, v) / flatness);
+    let way = length(half_way);
+    let is_moving = way > 1e-3 * radius;
+    let along = select(vec2f(1.0, 0.0), half_way / way, is_moving);
+    let streak = select(0.0, min(way / radius, LONGEST), is_moving);
+
+    // The triangle around the strip of half-length `streak` and radius 1, with a side along the motion.
+    let corner = f32(index % 3u);
+    let base = 2.0 * streak + sqrt(streak * streak + 3.0);
+    let side = vec2f(base * (corner - 1.0), select(-1.0, 2.0, corner == 1.0));
+    let offset = radius * (along * side.x + vec2f(-along.y, along.x) * side.y);
+
     var out: Varying;
-    out.position = corner.position;
+    out.position = globals.clip_from_world
+        * vec4f(globals.eye + centre + u * offset.x + v * (flatness * offset.y), 1.0);
     if out.position.w > 2.0 * nearer {
         out.position.z *= out.position.w / (out.position.w - nearer);
     }
-    if ((KINDS >> kind) & 1u) == 0u {
+    // Also false for NaN and infinity, and near the eye: these are not drawn. NaN would remain in a layer of floats.
+    let is_drawn = away > 1.1 * radius && away < 1e15 && particle.w > 0.0 && dot(velocity, velocity) < 1e20;
+    if !is_drawn || ((KINDS >> kind) & 1u) == 0u {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
     }
-    let angle = 6.2831853 * fract(61.0 * variation);
-    let turn = vec2f(cos(angle), sin(angle));
-    out.across = vec2f(dot(turn, corner.across), turn.x * corner.across.y - turn.y * corner.across.x);
-    let drawn = max(member, MIN_RADIUS * pixel / radius);
-    out.members = vec2f(opaque * member * member, 1.0) / (drawn * drawn);
-    out.appearance = vec3f(opacity, variation, f32(kind));
-    let light = 0.86 * (globals.sky_light + 0.72 * globals.sun_light * max(globals.sun.y, 0.0));
-    out.colour = present((0.88 + 0.12 * variation) * light);
+    out.across = side;
+    let fading = select(0.0, clamp(particle.w / FADE_TIME, 0.0, 1.0), is_drawn);
+    let sizes = Sizes(radius, pixel, streak * radius);
+    smallest *= globals.foam_radius;
+    opaque *= fading;
+    out.member_0 = member(seed + 1u, smallest, opaque, sizes);
+    out.member_1 = member(seed + 2u, smallest, opaque, sizes);
+    out.member_2 = member(seed + 3u, smallest, opaque, sizes);
+    out.member_3 = member(seed + 4u, smallest, opaque, sizes);
+    let fainter = own_radius * own_radius / (radius * radius) * thinned(streak, 1.0);
+    out.appearance = vec3f(streak, veil * fading * fainter, f32(kind));
+    var light = globals.foam_light;
+    if kind == SPRAY {
+        // Drops scatter sunlight mostly forwards.
+        let forward = 0.5 + 0.5 * dot(axis, globals.sun);
+        light = 0.86 * globals.sky_light + globals.sun_light * (0.4 + 0.4 * forward * forward * forward * forward);
+    }
+    out.colour = present((0.8 + 0.2 * variation) * light);
     return out;
 }
 
-// How much of the light from behind passes a drop at `centre`.
-fn past_drop(across: vec2f, centre: vec2f, members: vec2f) -> f32 {
-    let offset = across - centre;
-    return 1.0 - members.x * saturate(1.4 - 1.4 * members.y * dot(offset, offset));
+// Square of the distance from the way of a point, in radii.
+fn beside_way(offset: vec2f, streak: f32) -> f32 {
+    let over = max(abs(offset.x) - streak, 0.0);
+    return over * over + offset.y * offset.y;
 }
 
-// Opacity of a group of drops or bubbles in the unit circle. Equal groups would look like flakes of
-// snow: `variation` moves the members in and out.
-fn group(across: vec2f, members: vec2f, variation: f32) -> f32 {
-    let near = 0.6 + 0.5 * variation;
-    let far = 1.1 - 0.5 * variation;
-    var past = past_drop(across, near * vec2f(0.50, 0.30), members);
-    past *= past_drop(across, far * vec2f(-0.22, 0.60), members);
-    past *= past_drop(across, near * vec2f(-0.62, -0.22), members);
-    past *= past_drop(across, far * vec2f(0.36, -0.55), members);
-    past *= past_drop(across, vec2f(0.02, -0.08), members);
-    return 1.0 - past;
+// How much of the light from behind passes a member.
+fn past(across: vec2f, member: vec4f, streak: f32) -> f32 {
+    let inside = max(1.0 - member.z * beside_way(across - member.xy, streak), 0.0);
+    return 1.0 - member.w * inside * inside;
 }
 
 // The colour times the opacity, and the opacity.
 @fragment
 fn fragment_main(in: Varying) -> @location(0) vec4f {
-    let inside = 1.0 - dot(in.across, in.across);
+    let streak = in.appearance.x;
+    let inside = 1.0 - beside_way(in.across, streak);
     if inside <= 0.0 {
         discard;
     }
-    let kind = u32(in.appearance.z + 0.5);
-    var cover: f32;
-    if kind == BUBBLE {
-        // A bright rim.
-        cover = in.members.x * smoothstep(0.0, 0.15, inside) * (1.0 - 0.6 * smoothstep(0.2, 0.7, inside));
+    var opacity: f32;
+    if u32(in.appearance.z + 0.5) == BUBBLE {
+        // A bright rim, which motion blurs.
+        let rim = 0.6 / (1.0 + 2.0 * streak);
+        opacity = in.appearance.y * smoothstep(0.0, 0.15, inside) * (1.0 - rim * smoothstep(0.2, 0.7, inside));
     } else {
-        cover = group(in.across, in.members, in.appearance.y);
+        var behind = 1.0 - in.appearance.y * inside * inside;
+        behind *= past(in.across, in.member_0, streak);
+        behind *= past(in.across, in.member_1, streak);
+        behind *= past(in.across, in.member_2, streak);
+        behind *= past(in.across, in.member_3, streak);
+        opacity = 1.0 - behind;
     }
-    let opacity = in.appearance.x * cover;
     return vec4f(in.colour * opacity, opacity);
 }

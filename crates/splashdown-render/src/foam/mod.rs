@@ -15,10 +15,16 @@
 //! (docs/performance.md, The demo).
 //!
 //! A particle of spray stands for a cloud of drops, and one of foam for a patch of bubbles: the
-//! billboard shows a group of five, turned by a random angle. Single discs look like gravel. Foam
-//! lies in the surface: its billboard is foreshortened like a horizontal disc, and a depth offset
-//! moves it slightly towards the eye, because the surface would cut it in two. Drops and groups
-//! smaller than a pixel are enlarged to one pixel and their opacity is reduced accordingly.
+//! billboard shows a group of four, whose places and sizes are pseudo-random functions of the id, and a
+//! veil of smaller ones. Single discs look like gravel, and the same group everywhere like flakes of
+//! snow. Few groups and members are large. Foam lies in the surface: its billboard is foreshortened
+//! like a horizontal disc, and a depth offset moves it slightly towards the eye, because the surface
+//! would cut it in two. Members and groups smaller than a pixel are enlarged to one pixel and their
+//! opacity is reduced accordingly, so that distant spray adds up to a veil.
+//!
+//! *Motion.* Every member is blurred to a strip with round ends along the way of the particle while the
+//! shutter is open, with an opacity that is lower by the ratio of the areas. The triangle surrounds
+//! the strip of the whole group.
 //!
 //! # Why not the other way
 //! Four samples per pixel show no difference in the foam itself. Where a body or the liquid hides
@@ -37,10 +43,10 @@
 mod layer;
 
 use crate::chunks::{Chunk, bind_chunks};
-use crate::error::check_radius;
+use crate::error::{check_radius, check_shutter};
 use crate::globals::Globals;
 use crate::pipeline::{Bind, Depth, PREMULTIPLIED, PipelineDesc, bind_group_layout};
-use crate::shader::{ENVIRONMENT, GLOBALS, SPHERE, Shader};
+use crate::shader::{ENVIRONMENT, GLOBALS, Shader};
 use crate::targets::LAYER_FORMAT;
 use crate::{FoamBuffers, RenderError};
 pub(crate) use layer::FoamLayer;
@@ -49,7 +55,7 @@ pub(crate) use layer::{DEPTHS, OVER};
 use wgpu::{BindGroupLayout, Device, RenderPass, RenderPipeline, TextureFormat};
 
 pub(crate) const SHADER: Shader =
-    Shader { label: "foam", parts: &[GLOBALS, ENVIRONMENT, SPHERE, include_str!("foam.wgsl")] };
+    Shader { label: "foam", parts: &[GLOBALS, ENVIRONMENT, include_str!("foam.wgsl")] };
 
 /// Foam, spray and bubbles drawn as billboards.
 #[derive(Clone, Copy, Debug)]
@@ -59,6 +65,9 @@ pub struct DrawnFoam<'a> {
     pub buffers: FoamBuffers<'a>,
     /// Half the particle spacing of the fluid in metres. The size of the billboards is proportional to it.
     pub radius: f32,
+    /// Time in seconds for which the shutter is open: the particles are blurred along the way that they move in it. If the
+    /// samples of a traced picture have a [shutter](crate::Quality::shutter), it replaces this one.
+    pub shutter: f32,
 }
 
 /// The kinds of diffuse particles that a pass draws.
@@ -79,16 +88,24 @@ pub(crate) struct Foam {
 }
 
 impl<'a> DrawnFoam<'a> {
-    /// Diffuse particles in a fluid of a particle radius in metres, half the particle spacing.
+    /// Diffuse particles in a fluid of a particle radius in metres, half the particle spacing. Without motion blur.
     pub fn new(buffers: FoamBuffers<'a>, radius: f32) -> DrawnFoam<'a> {
-        DrawnFoam { buffers, radius }
+        DrawnFoam { buffers, radius, shutter: 0.0 }
+    }
+
+    /// The same with a shutter that is open for this time in seconds.
+    #[must_use]
+    pub fn with_shutter(self, shutter: f32) -> DrawnFoam<'a> {
+        DrawnFoam { shutter, ..self }
     }
 
     /// Checks the values and writes the uniforms.
     pub(crate) fn fill(&self, globals: &mut Globals) -> Result<(), RenderError> {
         self.buffers.check()?;
         check_radius(self.radius)?;
+        check_shutter("the shutter of the foam", self.shutter)?;
         globals.foam_radius = self.radius;
+        globals.foam_shutter = self.shutter;
         Ok(())
     }
 }

@@ -55,6 +55,8 @@ struct Globals {
     droplet_shutter: f32,   // s; time for which droplets are blurred
     water_root: u32,        // root of the tree of the liquid's triangles
     body_root: u32,         // root of the tree of the bodies' triangles
+    foam_light: vec3f,      // light from white foam that lies flat
+    foam_shutter: f32,      // s; time for which foam, spray and bubbles are blurred
     ray_shift: vec3f,       // moves every view ray: place in the pixel, and on the lens
     linear_output: u32,     // 1: the target stores linear light, without tone mapping
     glass: vec4u,           // per axis: bit 0: the lower side is a pane of glass, bit 1: the upper one

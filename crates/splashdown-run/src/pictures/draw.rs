@@ -7,9 +7,9 @@ use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::Gpu;
 use splashdown_io::{Particles, Picture};
 use splashdown_render::{
-    Colouring, DrawnFoam, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, Quality,
-    RenderError, Renderer, Ticket, TracedMeshes, UploadedBodies, UploadedDroplets, UploadedFoam,
-    UploadedParticles, UploadedSurface,
+    Colouring, DrawnParticles, DrawnSurface, Frame, Liquid, Offscreen, PlacedBody, Quality, RenderError,
+    Renderer, Ticket, TracedMeshes, UploadedBodies, UploadedDroplets, UploadedFoam, UploadedParticles,
+    UploadedSurface,
 };
 
 use super::{FrameData, motion};
@@ -160,7 +160,7 @@ impl FrameRenderer {
     fn empty_frame<'a>(&self, caption: &'a str, foam: Option<&'a UploadedFoam>) -> Frame<'a> {
         let camera = appearance::placed_camera(&self.camera);
         let mut frame = appearance::empty_frame(&self.scene, camera).with_caption(caption);
-        frame.foam = foam.map(|foam| DrawnFoam::new(foam.buffers(), self.scene.fluid.particle_radius()));
+        frame.foam = foam.map(|foam| appearance::foam(&self.scene, foam.buffers()));
         frame
     }
 
