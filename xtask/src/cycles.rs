@@ -38,7 +38,10 @@ const CASES: [Case; 4] = [
     },
     Case {
         scene: "floating",
-        changes: &[("particle_spacing = 0.02", "particle_spacing = 0.04")],
+        changes: &[
+            ("particle_spacing = 0.02", "particle_spacing = 0.04"),
+            ("enabled = true", "enabled = false"),
+        ],
         frames: &[9, 15],
     },
     Case {
