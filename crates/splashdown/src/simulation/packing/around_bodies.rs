@@ -80,14 +80,14 @@ fn pack_box(
     (closed.domain.min, closed.domain.max, closed.domain.closed) = (low, high, [[true; 2]; 3]);
     let mut relaxation = Relaxation::new(&closed, &first, bodies)?;
     relaxation.set_background_pressure(BACKGROUND)?;
-    let mut least = deviation(&relaxation.simulation.particles()?.densities);
+    let mut least = largest_error(&relaxation.simulation.particles()?.densities);
     let (mut brake, mut rounds, mut since) = (Brake::default(), 0, 0);
     while rounds < MAX_ROUNDS && since < PATIENCE {
         rounds += 1;
         since += 1;
         let Some(particles) = relaxation.round(first.len())? else { break };
         brake.apply(&mut relaxation, &particles)?;
-        let now = deviation(&particles.densities);
+        let now = largest_error(&particles.densities);
         if now < least {
             if now < 0.98 * least {
                 since = 0;
@@ -102,10 +102,8 @@ fn pack_box(
     Ok(rounds)
 }
 
-/// The standard deviation of densities over their mean.
-fn deviation(densities: &[f32]) -> f64 {
-    let count = densities.len().max(1) as f64;
-    let mean = densities.iter().map(|&density| f64::from(density)).sum::<f64>() / count;
-    let squares = densities.iter().map(|&density| (f64::from(density) / mean - 1.0).powi(2));
-    (squares.sum::<f64>() / count).sqrt()
+/// The largest difference of a density from the mean, over the mean.
+fn largest_error(densities: &[f32]) -> f64 {
+    let mean = densities.iter().map(|&density| f64::from(density)).sum::<f64>() / densities.len().max(1) as f64;
+    densities.iter().map(|&density| (f64::from(density) / mean - 1.0).abs()).fold(0.0, f64::max)
 }
