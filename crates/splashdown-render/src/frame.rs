@@ -157,6 +157,7 @@ impl<'a> Frame<'a> {
             globals.foam_shutter = 0.0;
         }
         (globals.water_root, globals.body_root) = meshes.roots();
+        globals.body_heights = meshes.body_heights();
         Ok(globals)
     }
 

@@ -13,9 +13,13 @@ pub(crate) const GLOBALS: &str = include_str!("shared/globals.wgsl");
 pub(crate) const ENVIRONMENT: &str = include_str!("shared/environment.wgsl");
 pub(crate) const OPTICS: &str = include_str!("shared/optics.wgsl");
 pub(crate) const MATTE: &str = include_str!("shared/matte.wgsl");
-/// Stands in for [`TRACE`] without trees of triangles.
+/// Stands in for [`SUNLIT`] without trees of triangles.
 pub(crate) const LIT: &str = include_str!("shared/lit.wgsl");
 pub(crate) const TRACE: &str = include_str!("tree/trace.wgsl");
+/// Where bodies lie in the maps of the sunlight on them.
+pub(crate) const SUN_LAYERS: &str = include_str!("trace/sun_layers.wgsl");
+/// Sunlight on bodies, with [`TRACE`] and [`SUN_LAYERS`].
+pub(crate) const SUNLIT: &str = include_str!("trace/sunlit.wgsl");
 /// The path of light through liquid, with [`TRACE`].
 pub(crate) const REFRACTED: &str = include_str!("trace/refracted.wgsl");
 pub(crate) const LIQUID: &str = include_str!("shared/liquid.wgsl");
@@ -127,8 +131,8 @@ mod tests {
         wgsl_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
         assert_eq!(
             files.len(),
-            ALL.len() + 15,
-            "each shader has its own file, and fifteen more are shared: {files:?}"
+            ALL.len() + 17,
+            "each shader has its own file, and seventeen more are shared: {files:?}"
         );
         for path in files {
             let text = std::fs::read_to_string(&path).unwrap();

@@ -168,11 +168,18 @@ fn light_is_absorbed_along_the_path() {
     let reflected = seen(400.0);
     let clear = seen(0.0) - reflected;
     let measured = (seen(1.5) - reflected) / clear;
+    // The light of the sun is also absorbed on its way to the plate, at the refracted angle. Of it 97.7 % / 1.333^2 leave
+    // the liquid, and 52.5 % of that of the sky.
+    let sky = Sky::day();
+    let sun = f64::from(sky.sun_light[1]) * height_of_sun() * 0.977 / 1.777;
+    let sky = f64::from(sky.sky_light[1]) * 0.525;
+    let sine = (1.0 - height_of_sun().powi(2)).sqrt() / 1.333;
+    let lit = (sun * (-1.5 * 0.4 / (1.0 - sine * sine).sqrt()).exp() + sky) / (sun + sky);
     // One step of a byte is two percent of this light.
-    let expected = (-1.5_f64 * 0.4).exp();
-    assert!((measured - expected).abs() < 0.03, "{measured}, expected {expected}");
+    let expected = |path: f64| lit * (-1.5 * path).exp();
+    assert!((measured - expected(0.4)).abs() < 0.03, "{measured}, expected {}", expected(0.4));
     // Negative control: another path length.
-    assert!((measured - (-1.5_f64 * 0.5).exp()).abs() > 0.03);
+    assert!((measured - expected(0.5)).abs() > 0.03);
 }
 
 #[test]
@@ -196,8 +203,12 @@ fn matte_surfaces_are_darker_in_water() {
         (seen(1.333, 0.0) - seen(1.333, 400.0)) / seen(1.0, 0.0)
     };
     // The surface reflects 2 % of light from above and 47.5 % of diffuse light from below. Of the latter the plate sends
-    // its albedo back.
-    let expected = |albedo: f64| 0.98 * (1.0 - 0.475) / (1.0 - 0.475 * albedo);
+    // its albedo back. The light of the sun, of which 97.7 % pass the surface, leaves with 1 / 1.333^2 of its radiance.
+    let sky = Sky::day();
+    let sun = f64::from(sky.sun_light[1]) * height_of_sun();
+    let of_sun = sun / (sun + f64::from(sky.sky_light[1]));
+    let passed = of_sun * 0.977 / 1.777 + (1.0 - of_sun) * (1.0 - 0.475);
+    let expected = |albedo: f64| 0.98 * passed / (1.0 - 0.475 * albedo);
     let dark_and_light = [0.2, 0.7].map(|albedo| {
         let (measured, expected) = (measured(albedo), expected(f64::from(albedo)));
         assert!((measured - expected).abs() < 0.03, "{measured}, expected {expected} for {albedo}");
@@ -254,6 +265,147 @@ fn a_ball_of_water_focuses_sunlight_on_the_floor() {
     };
     let (focused, straight) = (brightness(1.333), brightness(1.0));
     assert!(focused > 2.0 * straight, "{focused} and {straight}");
+}
+
+/// The vertical component of the unit vector to the sun.
+fn height_of_sun() -> f64 {
+    let [x, y, z] = Frame::SUN.map(f64::from);
+    y / (x * x + y * y + z * z).sqrt()
+}
+
+/// The tank with waves of this height on its surface.
+fn wavy_tank(amplitude: f32) -> sample::Mesh {
+    let mut mesh = tank();
+    // Without the upper face, the fourth.
+    mesh.triangles.drain(6..8);
+    let (side, wave_number) = (161, std::f32::consts::TAU / 0.25);
+    let first = mesh.vertices.len() as u32;
+    for k in 0..side {
+        for i in 0..side {
+            let (x, z) = (2.0 * i as f32 / (side - 1) as f32, k as f32 / (side - 1) as f32);
+            let (sin_x, cos_x) = (wave_number * x).sin_cos();
+            let (sin_z, cos_z) = (wave_number * z).sin_cos();
+            mesh.vertices.push([x, LEVEL + amplitude * sin_x * sin_z, z]);
+            let steepness = amplitude * wave_number;
+            mesh.normals.push([-steepness * cos_x * sin_z, 1.0, -steepness * sin_x * cos_z]);
+        }
+    }
+    for k in 0..side - 1 {
+        for i in 0..side - 1 {
+            let a = first + k * side + i;
+            mesh.triangles.extend([[a, a + side, a + 1], [a + 1, a + side, a + side + 1]]);
+        }
+    }
+    mesh
+}
+
+/// Straight down on the middle of the tank.
+fn from_above() -> Camera {
+    Camera { eye: [1.0, 2.5, 0.5], target: [1.0, 0.0, 0.5], up: [0.0, 0.0, -1.0], field_of_view_deg: 30.0 }
+}
+
+/// Light of a sun of strength 1 from bodies, at points of the height 0.2 m around the middle: `[x, z]` in m.
+fn sunlight(
+    harness: &mut Harness,
+    water: &sample::Mesh,
+    liquid: Liquid,
+    bodies: &[PlacedBody],
+    points: &[[f32; 2]],
+) -> Vec<f64> {
+    let device = &harness.device;
+    let surface = UploadedSurface::new(device, &water.vertices, &water.normals, &water.triangles).unwrap();
+    let placed = || bodies.iter().map(|body| (body, [0.0; 3], [0.0, 0.0, 0.0, 1.0]));
+    let meshes =
+        TracedMeshes::new(device, &water.vertices, &water.normals, &water.triangles, placed()).unwrap();
+    let uploaded = UploadedBodies::new(device, placed());
+    let mut frame = Frame::new(from_above(), domain())
+        .with_surface(DrawnSurface::new(surface.buffers(), liquid))
+        .with_tracing(&meshes, one_sample());
+    frame.bodies = Some(uploaded.buffers());
+    frame.tank = Tank::Hidden;
+    let [with_sun, without] = [1.0, 0.0].map(|strength| {
+        frame.sky.sun_light = [strength; 3];
+        harness.draw(SIZE, &frame)
+    });
+    let pixels = points.iter().map(|&[x, z]| pixel_of(from_above(), [x, 0.2, z]));
+    // Pictures show 0.8 of the light.
+    pixels.map(|at| (light(with_sun.pixel(at)[1]) - light(without.pixel(at)[1])) / 0.8).collect()
+}
+
+fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / values.len() as f64;
+    (mean, variance.sqrt())
+}
+
+#[test]
+fn waves_focus_sunlight_on_a_body_and_keep_its_mean() {
+    let Some(mut harness) = common::harness() else { return };
+    let plate = slab([0.3, 0.1, 0.1], [1.7, 0.2, 0.9]);
+    let plate = [PlacedBody::new(&plate.vertices, &plate.triangles, [0.5; 3]).unwrap()];
+    // Light that enters through the sides of the tank does not reach this part of the plate.
+    let grid = (0..40)
+        .flat_map(|i| (0..24).map(move |k| [0.75 + 0.5 * i as f32 / 40.0, 0.55 + 0.25 * k as f32 / 24.0]));
+    let grid: Vec<[f32; 2]> = grid.collect();
+    let clear = with(Liquid::water(), |l| l.absorption = [0.0; 3]);
+    let mut seen =
+        |water: &sample::Mesh| mean_and_deviation(&sunlight(&mut harness, water, clear, &plate, &grid));
+    // The surface lets pass 97.7 % of the sun and 98 % of the view; what leaves the water spreads, and 47.5 % of it
+    // return to the plate.
+    let expected = 0.5 * height_of_sun() * 0.977 * 0.98 / (1.333 * 1.333) / (1.0 - 0.475 * 0.5);
+    let (still, even) = seen(&tank());
+    assert!((still / expected - 1.0).abs() < 0.03, "{still}, expected {expected}");
+    assert!(even < 0.02 * still, "an even light: {even} of {still}");
+    let (wavy, uneven) = seen(&wavy_tank(0.005));
+    assert!((wavy / expected - 1.0).abs() < 0.04, "{wavy}, expected {expected}");
+    assert!(uneven > 0.1 * wavy, "caustics: {uneven} of {wavy}");
+    // Negative control: a factor that ignores the spread.
+    assert!((still / (expected * 1.777) - 1.0).abs() > 0.3);
+}
+
+#[test]
+fn absorption_dims_the_sunlight_on_a_body_along_the_refracted_way() {
+    let Some(mut harness) = common::harness() else { return };
+    let plate = slab([0.3, 0.1, 0.1], [1.7, 0.2, 0.9]);
+    let plate = [PlacedBody::new(&plate.vertices, &plate.triangles, [0.5; 3]).unwrap()];
+    let mut seen = |per_metre: f32| {
+        let liquid = with(Liquid::water(), |l| l.absorption = [per_metre; 3]);
+        sunlight(&mut harness, &tank(), liquid, &plate, &[[1.0, 0.5]])[0]
+    };
+    let measured = seen(1.0) / seen(0.0);
+    // 0.4 m down to the plate at the refracted angle, and straight up to the eye.
+    let sine = (1.0 - height_of_sun().powi(2)).sqrt() / 1.333;
+    let expected = (-0.4 / (1.0 - sine * sine).sqrt() - 0.4).exp();
+    assert!((measured - expected).abs() < 0.02, "{measured}, expected {expected}");
+    // Negative control: only the way to the eye.
+    assert!((measured - (-0.4_f64).exp()).abs() > 0.1);
+}
+
+#[test]
+fn shadows_of_bodies_on_bodies_are_refracted() {
+    let Some(mut harness) = common::harness() else { return };
+    let plate = slab([0.3, 0.1, 0.1], [1.7, 0.2, 0.9]);
+    let plate = PlacedBody::new(&plate.vertices, &plate.triangles, [0.5; 3]).unwrap();
+    let centre = [0.85, 0.55, 0.4];
+    let bodies = [plate, ball(centre, 0.04, [0.5; 3])];
+    // Where the ray of the sun through the centre of the ball meets the plate.
+    let below = |index: f32| {
+        let length = Frame::SUN.iter().map(|x| x * x).sum::<f32>().sqrt();
+        let [x, _, z] = Frame::SUN.map(|part| part / length / index);
+        let down = 0.35 / (1.0 - x * x - z * z).sqrt();
+        [centre[0] - x * down, centre[2] - z * down]
+    };
+    let points = [below(1.333), below(1.0), [1.2, 0.7]];
+    let mut seen = |index: f32| {
+        let liquid = with(Liquid::water(), |l| (l.refractive_index, l.absorption) = (index, [0.0; 3]));
+        let light = sunlight(&mut harness, &tank(), liquid, &bodies, &points);
+        [light[0] / light[2], light[1] / light[2]]
+    };
+    let [refracted, straight] = seen(1.333);
+    assert!(refracted < 0.15 && straight > 0.9, "{refracted} {straight}");
+    // Negative control: a liquid that does not refract.
+    let [refracted, straight] = seen(1.0);
+    assert!(refracted > 0.9 && straight < 0.15, "{refracted} {straight}");
 }
 
 #[test]

@@ -18,7 +18,7 @@ mod meshes;
 
 use crate::BodyBuffers;
 use crate::pipeline::{Depth, PipelineDesc};
-use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, LIT, MATTE, Shader, TRACE};
+use crate::shader::{ENVIRONMENT, EYE_DISTANCE, GLOBALS, LIT, MATTE, SUN_LAYERS, SUNLIT, Shader, TRACE};
 use crate::targets::THICKNESS_FORMAT;
 use wgpu::{
     BindGroupLayout, BlendComponent, BlendFactor, BlendOperation, BlendState, Device, RenderPass,
@@ -29,10 +29,10 @@ pub use meshes::{PlacedBody, UploadedBodies};
 
 pub(crate) const SHADER: Shader =
     Shader { label: "bodies", parts: &[GLOBALS, ENVIRONMENT, LIT, MATTE, include_str!("bodies.wgsl")] };
-/// With shadows of bodies on bodies, by rays through the trees in group 2.
+/// With shadows of bodies and light through liquid on bodies, by rays through the trees in group 2.
 pub(crate) const TRACED: Shader = Shader {
     label: "bodies in shadow",
-    parts: &[GLOBALS, ENVIRONMENT, TRACE, MATTE, include_str!("bodies.wgsl")],
+    parts: &[GLOBALS, ENVIRONMENT, TRACE, SUN_LAYERS, SUNLIT, MATTE, include_str!("bodies.wgsl")],
 };
 pub(crate) const DISTANCE: Shader =
     Shader { label: "distance of bodies", parts: &[GLOBALS, EYE_DISTANCE, include_str!("distance.wgsl")] };

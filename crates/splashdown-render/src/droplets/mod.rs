@@ -34,7 +34,9 @@ use crate::chunks::{Chunk, bind_chunks};
 use crate::error::{check_radius, check_shutter};
 use crate::globals::Globals;
 use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group_layout};
-use crate::shader::{ENVIRONMENT, GLOBALS, MATTE, OPTICS, REFRACTED, SPHERE, Shader, TRACE};
+use crate::shader::{
+    ENVIRONMENT, GLOBALS, MATTE, OPTICS, REFRACTED, SPHERE, SUN_LAYERS, SUNLIT, Shader, TRACE,
+};
 use crate::{DropletBuffers, Liquid, RenderError};
 use wgpu::{BindGroupLayout, Device, RenderPass, RenderPipeline, TextureFormat};
 
@@ -50,6 +52,8 @@ pub(crate) const TRACED: Shader = Shader {
         ENVIRONMENT,
         OPTICS,
         TRACE,
+        SUN_LAYERS,
+        SUNLIT,
         MATTE,
         REFRACTED,
         SPHERE,

@@ -17,16 +17,19 @@ pub(crate) struct FloorLight {
 
 impl FloorLight {
     pub fn new(device: &Device) -> FloorLight {
-        let layout = bind_group_layout(device, "environment", &[Bind::Texture, Bind::Texture, Bind::Sampler]);
+        let bindings = [Bind::Texture, Bind::Texture, Bind::Sampler, Bind::Texture];
+        let layout = bind_group_layout(device, "environment", &bindings);
         FloorLight { layout, sampler: linear_sampler(device) }
     }
 
-    /// Binds the fraction of the sunlight and that of the sky.
-    pub fn bind(&self, device: &Device, sunlight: &TextureView, sky: &TextureView) -> BindGroup {
+    /// Binds the fractions of the sunlight and of the sky on the floor, and of the sunlight on bodies, which only pictures
+    /// with traced rays read.
+    pub fn bind(&self, device: &Device, [sunlight, sky, bodies]: [&TextureView; 3]) -> BindGroup {
         let resources = [
             BindingResource::TextureView(sunlight),
             BindingResource::TextureView(sky),
             BindingResource::Sampler(&self.sampler),
+            BindingResource::TextureView(bodies),
         ];
         bind_group(device, "environment", &self.layout, &resources)
     }

@@ -95,7 +95,7 @@ impl Shadow {
             from_surface: from_surface.build(device),
             from_bodies: from_bodies.build(device),
             from_particles: from_particles.build(device),
-            environment: floor_light.bind(device, &maps[0], &open_sky),
+            environment: floor_light.bind(device, [&maps[0], &open_sky, &open_sky]),
             floor_light,
             particles_layout,
             absorb,

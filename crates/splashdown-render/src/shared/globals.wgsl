@@ -80,6 +80,8 @@ struct Globals {
     glass_thickness: f32,   // m
     bounced: vec3f,         // light from the floor on surfaces that face it
     sunlit_panes: u32,      // panes that take sunlight: bits 0 and 1 for x, 2 and 3 for z
+    body_heights: vec2f,    // of the lowest and the highest point of all bodies
+    reserved: vec2u,
     edges: array<Edge, 12>,
 }
 

@@ -1,6 +1,6 @@
-// Every point of a body receives the whole sunlight. Stands in for trace.wgsl where there are no
+// Every point of a body that faces the sun receives the whole sunlight. Stands in for sunlit.wgsl where there are no
 // trees of triangles.
 
-fn sunlight_at(position: vec3f, normal: vec3f) -> f32 {
-    return 1.0;
+fn sun_on(point: vec3f, normal: vec3f, in_liquid: bool) -> vec3f {
+    return vec3f(max(dot(normal, globals.sun), 0.0));
 }

@@ -1,4 +1,4 @@
-//! The light that reaches the floor through the liquid.
+//! The light that reaches floor and bodies through the liquid.
 
 use crate::pipeline::{ADD, Bind, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::Recorder;
@@ -11,6 +11,8 @@ use wgpu::{
 
 /// Texels on a side of the map of the sunlight. As many rays of the sun are followed.
 const SIDE: u32 = 512;
+/// The maps of the sunlight on bodies: tiles of [`SIDE`] texels for each layer, as in `sun_layers.wgsl`.
+const BODIES_SIDE: u32 = 4 * SIDE;
 /// Texels on a side of the map of the sky.
 const SKY_SIDE: u32 = 128;
 /// Standard deviations of the blurs in texels: caustics remain sharp; a texel of the sky has few
@@ -22,10 +24,12 @@ const SKY_BLUR: f64 = 2.0;
 pub(super) struct Floor {
     photons: RenderPipeline,
     splat: RenderPipeline,
+    splat_on_bodies: RenderPipeline,
     sky: RenderPipeline,
     arrivals: TextureView,
     arrivals_group: BindGroup,
     sunlight_maps: [TextureView; 2],
+    bodies_map: TextureView,
     sky_maps: [TextureView; 2],
     sunlight_blur: Blur,
     sky_blur: Blur,
@@ -56,30 +60,43 @@ impl Floor {
         let sky = PipelineDesc { constants: &sky_side, ..PipelineDesc::new(super::FLOOR_SKY, &traced, SKY) };
         let arrivals_layout = bind_group_layout(device, "arrivals", &[Bind::VertexTexture]);
         let splat_layouts = [globals, &arrivals_layout];
-        let splat = PipelineDesc {
-            topology: PrimitiveTopology::PointList,
-            blend: Some(ADD),
-            ..PipelineDesc::new(super::SPLAT, &splat_layouts, SUNLIGHT)
+        let splat = |bodies: f64| {
+            let desc = PipelineDesc {
+                topology: PrimitiveTopology::PointList,
+                blend: Some(ADD),
+                constants: &[("BODIES", bodies)],
+                ..PipelineDesc::new(super::SPLAT, &splat_layouts, SUNLIGHT)
+            };
+            desc.build(device)
         };
+        let bodies_map = map("sunlight on bodies", BODIES_SIDE, SUNLIGHT);
         let resources = [BindingResource::TextureView(&arrivals)];
         let [sunlight, sunlight_between] = &sunlight_maps;
         let [sky_map, sky_between] = &sky_maps;
         Floor {
             photons: photons.build(device),
-            splat: splat.build(device),
+            splat: splat(0.0),
+            splat_on_bodies: splat(1.0),
             sky: sky.build(device),
             arrivals_group: bind_group(device, "arrivals", &arrivals_layout, &resources),
-            environment: floor_light.bind(device, sunlight, sky_map),
+            environment: floor_light.bind(device, [sunlight, sky_map, &bodies_map]),
             sunlight_blur: Blur::new(device, [sunlight, sunlight_between], SUNLIGHT, SUNLIGHT_BLUR),
             sky_blur: Blur::new(device, [sky_map, sky_between], SKY, SKY_BLUR),
             arrivals,
             sunlight_maps,
+            bodies_map,
             sky_maps,
         }
     }
 
     /// Computes the sunlight; a sample with another index follows other rays.
-    pub fn record_sunlight(&self, recorder: &mut Recorder<'_>, globals: &BindGroup, trees: &BindGroup) {
+    pub fn record_sunlight(
+        &self,
+        recorder: &mut Recorder<'_>,
+        globals: &BindGroup,
+        trees: &BindGroup,
+        has_bodies: bool,
+    ) {
         {
             let mut pass = recorder.cleared("rays of the sun", &self.arrivals, Color::TRANSPARENT);
             pass.set_pipeline(&self.photons);
@@ -87,13 +104,16 @@ impl Floor {
             pass.set_bind_group(2, trees, &[]);
             pass.draw(0..3, 0..1);
         }
-        {
-            let mut pass =
-                recorder.cleared("sunlight on the floor", &self.sunlight_maps[0], Color::TRANSPARENT);
-            pass.set_pipeline(&self.splat);
+        let mut collect = |label, map, pipeline| {
+            let mut pass = recorder.cleared(label, map, Color::TRANSPARENT);
+            pass.set_pipeline(pipeline);
             pass.set_bind_group(0, globals, &[]);
             pass.set_bind_group(1, &self.arrivals_group, &[]);
             pass.draw(0..SIDE * SIDE, 0..1);
+        };
+        collect("sunlight on the floor", &self.sunlight_maps[0], &self.splat);
+        if has_bodies {
+            collect("sunlight on bodies", &self.bodies_map, &self.splat_on_bodies);
         }
         self.sunlight_blur.record(recorder, [&self.sunlight_maps[0], &self.sunlight_maps[1]]);
     }

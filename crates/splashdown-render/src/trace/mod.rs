@@ -3,10 +3,11 @@
 //! # How it works
 //! Fragment shaders follow rays through the trees of liquid and bodies (module `tree`).
 //!
-//! 1. *Sunlight on the floor*: every texel of a map of the floor follows one ray of the sun through
+//! 1. *Sunlight on floor and bodies*: every texel of a map of the floor follows one ray of the sun through
 //!    the panes and the liquid, with refraction, absorption and total internal reflection, and stores
 //!    where it arrives. Points with additive blending then collect the light where it arrives, which makes
-//!    caustics and the shadows of bodies. A map of the visible fraction of the sky darkens the floor
+//!    caustics and the shadows of bodies. Light that arrives at bodies is collected in layers by height
+//!    (`sun_layers.wgsl`). A map of the visible fraction of the sky darkens the floor
 //!    around bodies.
 //! 2. *Samples*: background, bodies, liquid, droplets, foam and glass are drawn with one sample per pixel as
 //!    light without tone mapping. The depth of the liquid is drawn first, so that its shader runs
@@ -24,12 +25,14 @@
 //! pictures with few samples have no noise. `cargo xtask cycles` compares both.
 //!
 //! # Things we might try
-//! Caustics on bodies; bubbles under water; droplets in reflections.
+//! Bubbles under water; droplets in reflections.
 
 mod floor;
 mod picture;
 
-use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, MATTE, OPTICS, REFRACTED, Shader, TRACE};
+use crate::shader::{
+    ENVIRONMENT, FULLSCREEN, GLOBALS, MATTE, OPTICS, REFRACTED, SUN_LAYERS, SUNLIT, Shader, TRACE,
+};
 
 pub(crate) use picture::TracedPicture;
 
@@ -37,14 +40,24 @@ pub(crate) const DEPTH: Shader =
     Shader { label: "depth of the liquid", parts: &[GLOBALS, include_str!("depth.wgsl")] };
 pub(crate) const LIQUID: Shader = Shader {
     label: "traced liquid",
-    parts: &[GLOBALS, ENVIRONMENT, OPTICS, TRACE, MATTE, REFRACTED, include_str!("liquid.wgsl")],
+    parts: &[
+        GLOBALS,
+        ENVIRONMENT,
+        OPTICS,
+        TRACE,
+        SUN_LAYERS,
+        SUNLIT,
+        MATTE,
+        REFRACTED,
+        include_str!("liquid.wgsl"),
+    ],
 };
 pub(crate) const PHOTONS: Shader = Shader {
     label: "rays of the sun",
-    parts: &[GLOBALS, FULLSCREEN, OPTICS, TRACE, include_str!("photons.wgsl")],
+    parts: &[GLOBALS, FULLSCREEN, OPTICS, TRACE, SUN_LAYERS, include_str!("photons.wgsl")],
 };
 pub(crate) const SPLAT: Shader =
-    Shader { label: "sunlight on the floor", parts: &[GLOBALS, include_str!("splat.wgsl")] };
+    Shader { label: "sunlight on the floor", parts: &[GLOBALS, SUN_LAYERS, include_str!("splat.wgsl")] };
 pub(crate) const FLOOR_SKY: Shader = Shader {
     label: "sky above the floor",
     parts: &[GLOBALS, FULLSCREEN, TRACE, include_str!("floor_sky.wgsl")],

@@ -1,5 +1,5 @@
-// Where sunlight meets the floor: each pixel follows one ray of the sun through panes and liquid and stores
-// where it arrives. Needs globals.wgsl, fullscreen.wgsl, optics.wgsl, trace.wgsl.
+// Where sunlight meets the floor and bodies: each pixel follows one ray of the sun through panes and liquid and stores
+// where it arrives. Needs globals.wgsl, fullscreen.wgsl, optics.wgsl, trace.wgsl, sun_layers.wgsl.
 
 override SIDE: u32 = 512u;
 
@@ -25,16 +25,34 @@ fn through_tank(origin: vec3f, direction: vec3f, limit: f32) -> f32 {
     return light;
 }
 
+const LOST = vec4f(-1.0, -1.0, 0.0, 0.0);
+
+fn is_on_map(place: vec2f) -> bool {
+    return all(place > vec2f(0.0)) && all(place < vec2f(1.0));
+}
+
+fn on_floor(point: vec3f, path: f32, light: f32) -> vec4f {
+    let place = (point.xz - globals.shadow_min) / globals.shadow_size;
+    return select(LOST, vec4f(place, path, light), is_on_map(place));
+}
+
+// The first coordinate also stores the layer: twice its number, counted from 1, is added.
+fn on_body(point: vec3f, in_liquid: bool, path: f32, light: f32) -> vec4f {
+    let place = place_on_map(point, sun_around(in_liquid));
+    let layer = clamp(floor(height_in_layers(point.y)), 0.0, LAYERS - 1.0) + select(LAYERS, 0.0, in_liquid);
+    return select(LOST, vec4f(place.x + 2.0 * (layer + 1.0), place.y, path, light), is_on_map(place));
+}
+
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let side = vec2f(f32(SIDE));
     // A different place in the texel for every sample.
     let shift = fract(f32(globals.sample) * vec2f(0.7548777, 0.5698403));
     let uv = (floor(position.xy) + fract(shift + 0.5)) / side;
-    let on_floor = globals.shadow_min + uv * globals.shadow_size;
+    let aim = globals.shadow_min + uv * globals.shadow_size;
     let start_height = globals.box_max.y - globals.floor_height;
     let up = (start_height + 1e-3 * start_height) / globals.sun.y;
-    var origin = vec3f(on_floor.x, globals.floor_height, on_floor.y) + globals.sun * up;
+    var origin = vec3f(aim.x, globals.floor_height, aim.y) + globals.sun * up;
     var direction = -globals.sun;
     var inside = false;
     var path = 0.0;
@@ -44,26 +62,28 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let to_floor = floor_distance(origin, direction);
         if hit.triangle == NO_TRIANGLE || (to_floor > 0.0 && to_floor < hit.distance) {
             if to_floor < 0.0 {
-                return vec4f(-1.0, -1.0, 0.0, 0.0);
+                return LOST;
             }
             light *= through_tank(origin, direction, to_floor);
-            let arrived = (origin + direction * to_floor).xz;
             path += select(0.0, to_floor, inside);
-            return vec4f((arrived - globals.shadow_min) / globals.shadow_size, path, light);
+            return on_floor(origin + direction * to_floor, path, light);
         }
         let place = origin + direction * hit.distance;
         let found = struck(hit);
-        if found.is_body {
-            return vec4f(-1.0, -1.0, 0.0, 0.0);
-        }
         path += select(0.0, hit.distance, inside);
         light *= through_tank(origin, direction, hit.distance);
+        if found.is_body {
+            return on_body(place, inside, path, light);
+        }
         let leaving = dot(direction, found.face) > 0.0;
         if leaving && place.y - globals.floor_height < globals.contact_distance && found.face.y < 0.0 {
-            return vec4f((place.xz - globals.shadow_min) / globals.shadow_size, path, light);
+            return on_floor(place, path, light);
         }
-        if leaving && touched_body(place, direction).triangle != NO_TRIANGLE {
-            return vec4f(-1.0, -1.0, 0.0, 0.0);
+        if leaving {
+            let beyond = touched_body(place, direction);
+            if beyond.triangle != NO_TRIANGLE {
+                return on_body(place + direction * beyond.distance, true, path, light);
+            }
         }
         let normal = facing_normal(select(found.normal, -found.normal, leaving), -direction);
         let ratio = select(1.0 / globals.refractive_index, globals.refractive_index, leaving);
@@ -78,5 +98,5 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
         }
         origin = place;
     }
-    return vec4f(-1.0, -1.0, 0.0, 0.0);
+    return LOST;
 }

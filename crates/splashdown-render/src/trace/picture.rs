@@ -133,7 +133,7 @@ impl TracedPicture {
         }
         // With few samples the caustics of the first serve all.
         if sample == 0 || quality.samples > 16 {
-            self.floor.record_sunlight(recorder, globals, trees);
+            self.floor.record_sunlight(recorder, globals, trees, meshes.has_bodies());
         }
         self.record_scene(device, recorder, targets, [globals, trees], frame, surface);
         let own = sample as usize % 2;

@@ -1,5 +1,5 @@
 // The path of light through liquid, followed from surface to surface. Needs globals.wgsl,
-// environment.wgsl, optics.wgsl, trace.wgsl, matte.wgsl.
+// environment.wgsl, optics.wgsl, trace.wgsl, sunlit.wgsl, matte.wgsl.
 
 // Surfaces that a path crosses before the environment replaces the rest.
 override BOUNCES: i32 = 7;
@@ -23,6 +23,15 @@ fn wet_floor(p: vec2f) -> vec3f {
     let light = light_on_floor(p);
     let factors = wet(albedo);
     return albedo * (light[0] * factors[0] + light[1] * factors[1]);
+}
+
+// Light that a point of a body in the liquid sends out of it. The liquid takes away the gloss: its refractive index is
+// near that of the body.
+fn wet_body(point: vec3f, outward: vec3f, colour: vec3f, to_eye: vec3f) -> vec3f {
+    let normal = visible_normal(outward, to_eye);
+    let factors = wet(colour);
+    let sun = globals.sun_light * sun_on(point, normal, true);
+    return colour * (sun * factors[0] + sky_on(point, normal) * factors[1]);
 }
 
 // Light along a ray that starts at the surface of the liquid, which has this normal there. A part of the light is reflected at
@@ -51,8 +60,14 @@ fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pix
             weight *= passed(hit.distance);
         }
         if found.is_body {
-            let light = matte(place, found.normal, found.colour, -direction);
-            return scattered + weight * light * select(vec3f(1.0), wet(found.colour)[1], inside);
+            // Not `select`: it would evaluate both.
+            var light: vec3f;
+            if inside {
+                light = wet_body(place, found.normal, found.colour, -direction);
+            } else {
+                light = matte(place, found.normal, found.colour, -direction);
+            }
+            return scattered + weight * light;
         }
         let leaving = dot(direction, found.face) > 0.0;
         let is_on_floor = has_floor() && place.y - globals.floor_height < globals.contact_distance;
@@ -65,7 +80,7 @@ fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pix
             if beyond.triangle != NO_TRIANGLE {
                 let body = struck(beyond);
                 let at = place + direction * beyond.distance;
-                return scattered + weight * matte(at, body.normal, body.colour, -direction) * wet(body.colour)[1];
+                return scattered + weight * wet_body(at, body.normal, body.colour, -direction);
             }
         }
         let normal = facing_normal(select(found.normal, -found.normal, leaving), -direction);

@@ -29,6 +29,8 @@ pub struct TracedMeshes {
     corners: Buffer,
     water_root: u32,
     body_root: u32,
+    /// Of the lowest and the highest point of all bodies.
+    body_heights: [f32; 2],
 }
 
 /// Triangles and corners while they are collected.
@@ -75,6 +77,7 @@ impl TracedMeshes {
         let rows: Vec<[u32; 4]> = triangles.iter().map(|&[a, b, c]| [a, b, c, 0]).collect();
         let water_root = all.add_tree(&rows);
         let mut rows = Vec::new();
+        let first_of_bodies = all.corners.len();
         for (body, position, rotation) in bodies {
             let first = all.corners.len() as u32;
             let places = body.placed(position, rotation);
@@ -86,7 +89,12 @@ impl TracedMeshes {
             }));
         }
         let body_root = all.add_tree(&rows);
-        all.upload(device, water_root, body_root)
+        let heights = || all.corners[first_of_bodies..].iter().map(|corner| corner.position[1]);
+        let body_heights = match rows.is_empty() {
+            true => [0.0; 2],
+            false => [heights().fold(f32::INFINITY, f32::min), heights().fold(f32::NEG_INFINITY, f32::max)],
+        };
+        all.upload(device, [water_root, body_root], body_heights)
     }
 }
 
@@ -94,6 +102,11 @@ impl TracedMeshes {
     /// The roots of the trees of liquid and bodies, as in the uniforms.
     pub(crate) fn roots(&self) -> (u32, u32) {
         (self.water_root, self.body_root)
+    }
+
+    /// Heights of the lowest and the highest point of all bodies.
+    pub(crate) fn body_heights(&self) -> [f32; 2] {
+        self.body_heights
     }
 
     pub(crate) fn has_bodies(&self) -> bool {
@@ -120,7 +133,12 @@ impl Triangles {
         root
     }
 
-    fn upload(self, device: &Device, water_root: u32, body_root: u32) -> Result<TracedMeshes, RenderError> {
+    fn upload(
+        self,
+        device: &Device,
+        [water_root, body_root]: [u32; 2],
+        body_heights: [f32; 2],
+    ) -> Result<TracedMeshes, RenderError> {
         let limits = device.limits();
         let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let largest =
@@ -138,6 +156,7 @@ impl Triangles {
             corners: upload(device, "tree corners", &self.corners, usage),
             water_root,
             body_root,
+            body_heights,
         })
     }
 }

@@ -131,12 +131,6 @@ fn meets_body(origin: vec3f, direction: vec3f) -> bool {
     return nearest_of(globals.body_root, origin, direction, no_hit(FAR)).triangle != NO_TRIANGLE;
 }
 
-// Fraction of the sunlight that reaches a point of a body.
-fn sunlight_at(position: vec3f, normal: vec3f) -> f32 {
-    let start = position + normal * (4.0 * globals.ray_offset);
-    return select(1.0, 0.0, meets_body(start, globals.sun));
-}
-
 fn unpacked_normal(packed: u32) -> vec3f {
     let octahedron = unpack2x16snorm(packed);
     var n = vec3f(octahedron, 1.0 - abs(octahedron.x) - abs(octahedron.y));
