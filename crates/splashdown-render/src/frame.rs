@@ -132,6 +132,17 @@ impl<'a> Frame<'a> {
         only_liquid.then_some(quality.samples)
     }
 
+    /// Whether the eye, or a point of its lens, lies within the bounds of the traced liquid.
+    pub(crate) fn eye_may_be_in_liquid(&self) -> bool {
+        self.traced.is_some_and(|(meshes, quality)| {
+            let (eye, target) = (Vec3::from(self.camera.eye), Vec3::from(self.camera.target));
+            // The near plane is at a thousandth of the distance of the target, up to a factor at the corners of the picture.
+            let margin = Vec3::splat(quality.aperture + 0.01 * eye.distance(target));
+            let [low, high] = meshes.water_bounds();
+            eye.cmpge(low - margin).all() && eye.cmple(high + margin).all()
+        })
+    }
+
     /// The uniforms of a sample of a picture with traced rays.
     pub(crate) fn sample_globals(&self, size: [u32; 2], sample: u32) -> Result<Globals, RenderError> {
         let mut globals = self.globals(size, true)?;

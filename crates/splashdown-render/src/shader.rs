@@ -45,7 +45,7 @@ mod tests {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
     use std::path::{Path, PathBuf};
 
-    const ALL: [Shader; 40] = [
+    const ALL: [Shader; 41] = [
         crate::background::SHADER,
         crate::bodies::SHADER,
         crate::bodies::DISTANCE,
@@ -81,6 +81,7 @@ mod tests {
         crate::bodies::TRACED,
         crate::trace::DEPTH,
         crate::trace::LIQUID,
+        crate::trace::INSIDE,
         crate::trace::PHOTONS,
         crate::trace::SPLAT,
         crate::trace::FLOOR_SKY,

@@ -16,6 +16,8 @@
 //!    and the reflected ray if it matters. Bodies and floor are darker in the liquid than outside. Every sample shifts the place in the pixel, on the lens
 //!    and in time; the samples are averaged. The samples of a picture in which liquid and bodies move are drawn from several
 //!    frames, each with its own trees.
+//!    With the eye inside the bounds of the liquid, every ray is also followed from the eye, for the pixels
+//!    that lie in the liquid (`inside.wgsl`).
 //! 3. *Tone mapping* of the average.
 //!
 //! # Why not the other way
@@ -50,6 +52,21 @@ pub(crate) const LIQUID: Shader = Shader {
         MATTE,
         REFRACTED,
         include_str!("liquid.wgsl"),
+    ],
+};
+pub(crate) const INSIDE: Shader = Shader {
+    label: "inside the liquid",
+    parts: &[
+        GLOBALS,
+        FULLSCREEN,
+        ENVIRONMENT,
+        OPTICS,
+        TRACE,
+        SUN_LAYERS,
+        SUNLIT,
+        MATTE,
+        REFRACTED,
+        include_str!("inside.wgsl"),
     ],
 };
 pub(crate) const PHOTONS: Shader = Shader {

@@ -30,6 +30,7 @@ pub(crate) struct TracedPicture {
     bodies: RenderPipeline,
     depth: RenderPipeline,
     liquid: RenderPipeline,
+    inside: RenderPipeline,
     droplets: Droplets,
     foam: Foam,
     glass: Glass,
@@ -80,6 +81,8 @@ impl TracedPicture {
             vertex_buffers: 2,
             ..PipelineDesc::new(super::LIQUID, &traced, LIGHT)
         };
+        let inside =
+            PipelineDesc { depth: Some(Depth::Write), ..PipelineDesc::new(super::INSIDE, &traced, LIGHT) };
         let of_textures = [globals, &texture_layout, &texture_layout];
         let accumulate = PipelineDesc::new(super::ACCUMULATE, &of_textures, MEAN);
         TracedPicture {
@@ -88,6 +91,7 @@ impl TracedPicture {
             bodies: bodies::pipeline(device, bodies::TRACED, &traced, LIGHT, 1),
             depth: depth.build(device),
             liquid: liquid.build(device),
+            inside: inside.build(device),
             droplets: Droplets::new(device, &traced, LIGHT, 1),
             foam: Foam::new(device, plain, LIGHT),
             glass: Glass::new(device, plain, LIGHT, 1),
@@ -184,6 +188,10 @@ impl TracedPicture {
             pass.set_pipeline(&self.liquid);
             pass.set_vertex_buffer(1, surface.buffers.normals.slice(..));
             surface.buffers.draw(&mut pass);
+            if frame.eye_may_be_in_liquid() {
+                pass.set_pipeline(&self.inside);
+                pass.draw(0..3, 0..1);
+            }
             self.droplets.record(&mut pass, &droplets);
         }
         let mut pass = recorder.one_sample("foam and glass", &targets.sample, &targets.depth, Start::Load);

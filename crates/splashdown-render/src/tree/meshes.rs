@@ -29,6 +29,8 @@ pub struct TracedMeshes {
     corners: Buffer,
     water_root: u32,
     body_root: u32,
+    /// The corners of the box around the liquid; the lower one is the greater one without liquid.
+    water_bounds: [Vec3; 2],
     /// Of the lowest and the highest point of all bodies.
     body_heights: [f32; 2],
 }
@@ -94,7 +96,10 @@ impl TracedMeshes {
             true => [0.0; 2],
             false => [heights().fold(f32::INFINITY, f32::min), heights().fold(f32::NEG_INFINITY, f32::max)],
         };
-        all.upload(device, [water_root, body_root], body_heights)
+        let points = || vertices.iter().map(|&vertex| Vec3::from(vertex));
+        let water_bounds =
+            [points().fold(Vec3::INFINITY, Vec3::min), points().fold(Vec3::NEG_INFINITY, Vec3::max)];
+        all.upload(device, [water_root, body_root], water_bounds, body_heights)
     }
 }
 
@@ -102,6 +107,11 @@ impl TracedMeshes {
     /// The roots of the trees of liquid and bodies, as in the uniforms.
     pub(crate) fn roots(&self) -> (u32, u32) {
         (self.water_root, self.body_root)
+    }
+
+    /// The corners of the box around the liquid; without liquid, no point is between them.
+    pub(crate) fn water_bounds(&self) -> [Vec3; 2] {
+        self.water_bounds
     }
 
     /// Heights of the lowest and the highest point of all bodies.
@@ -137,6 +147,7 @@ impl Triangles {
         self,
         device: &Device,
         [water_root, body_root]: [u32; 2],
+        water_bounds: [Vec3; 2],
         body_heights: [f32; 2],
     ) -> Result<TracedMeshes, RenderError> {
         let limits = device.limits();
@@ -156,6 +167,7 @@ impl Triangles {
             corners: upload(device, "tree corners", &self.corners, usage),
             water_root,
             body_root,
+            water_bounds,
             body_heights,
         })
     }
