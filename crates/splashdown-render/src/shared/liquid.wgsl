@@ -5,10 +5,6 @@
 @group(2) @binding(1) var thickness: texture_2d<f32>;      // length of the view ray inside the liquid, m
 @group(2) @binding(2) var scene_sampler: sampler;
 
-// Factor on the absorption. Rays end at the first free surface here, so that their paths are shorter than those of
-// traced rays.
-const EMPHASIS = 2.0;
-
 // Length in metres of the view ray inside the liquid.
 fn liquid_path(pixel: vec2f) -> f32 {
     return max(textureSampleLevel(thickness, scene_sampler, pixel / globals.picture_size, 0.0).r, 0.0);
@@ -101,7 +97,7 @@ fn liquid_colour(world: vec3f, outward: vec3f, path: f32) -> vec3f {
     }
 
     // Absorption along the path (Beer-Lambert), and light scattered back by a turbid liquid.
-    let transmittance = exp(-EMPHASIS * globals.liquid_absorption * leaving.path);
+    let transmittance = exp(-globals.liquid_absorption * leaving.path);
     let transmitted = mix(behind * transmittance, scattered_light(normal), turbidity(leaving.path));
     let sun = sun_highlight(normal, to_eye, facing);
     return present(mix(transmitted, reflection, mirrored) + globals.sun_light * min(2.2 * sun, 12.0));
