@@ -17,12 +17,16 @@ fn sky_on(point: vec3f, normal: vec3f) -> vec3f {
     return (globals.sky_light * above + bounced) * open;
 }
 
-// Light from a point of a body outside the liquid.
-fn matte(point: vec3f, outward: vec3f, colour: vec3f, to_eye: vec3f) -> vec3f {
-    let normal = visible_normal(outward, to_eye);
-    let sun = globals.sun_light * sun_on(point, normal, false);
+// Light from a point of a body outside the liquid, on which this light of sun and sky falls.
+fn dry_light(normal: vec3f, colour: vec3f, to_eye: vec3f, sun: vec3f, sky: vec3f) -> vec3f {
     let half_way = normalize(globals.sun + to_eye);
     let shine = 0.12 * pow(max(dot(normal, half_way), 0.0), 60.0);
     let rim = 0.05 * pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0);
-    return colour * (sun + sky_on(point, normal)) + sun * shine + globals.sky_light * rim;
+    return colour * (sun + sky) + sun * shine + globals.sky_light * rim;
+}
+
+// Light from a point of a body outside the liquid.
+fn matte(point: vec3f, outward: vec3f, colour: vec3f, to_eye: vec3f) -> vec3f {
+    let normal = visible_normal(outward, to_eye);
+    return dry_light(normal, colour, to_eye, globals.sun_light * sun_on(point, normal, false), sky_on(point, normal));
 }

@@ -25,13 +25,24 @@ fn wet_floor(p: vec2f) -> vec3f {
     return albedo * (light[0] * factors[0] + light[1] * factors[1]);
 }
 
-// Light that a point of a body in the liquid sends out of it. The liquid takes away the gloss: its refractive index is
-// near that of the body.
-fn wet_body(point: vec3f, outward: vec3f, colour: vec3f, to_eye: vec3f) -> vec3f {
+// Light that a point of a body sends out of the liquid, or towards the eye outside it. The liquid takes away the gloss: its
+// refractive index is near that of the body.
+fn body_light(point: vec3f, outward: vec3f, colour: vec3f, to_eye: vec3f, in_liquid: bool) -> vec3f {
     let normal = visible_normal(outward, to_eye);
+    let sun = globals.sun_light * sun_on(point, normal, in_liquid);
+    let sky = sky_on(point, normal);
     let factors = wet(colour);
-    let sun = globals.sun_light * sun_on(point, normal, true);
-    return colour * (sun * factors[0] + sky_on(point, normal) * factors[1]);
+    let wet_light = colour * (sun * factors[0] + sky * factors[1]);
+    return select(dry_light(normal, colour, to_eye, sun, sky), wet_light, in_liquid);
+}
+
+// The body at the end of a ray.
+struct MetBody {
+    is_met: bool,
+    point: vec3f,
+    normal: vec3f,
+    colour: vec3f,
+    in_liquid: bool,
 }
 
 // Light along a ray that starts at the surface of the liquid, which has this normal there. A part of the light is reflected at
@@ -43,6 +54,8 @@ fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pix
     var scattered = vec3f(0.0);
     var weight = vec3f(1.0);
     var inside = true;
+    // Shaded after the loop: a software driver would shade it at every surface.
+    var body: MetBody;
     for (var bounce = 0; bounce < BOUNCES; bounce++) {
         let hit = nearest_hit(origin, direction);
         let to_floor = floor_distance(origin, direction);
@@ -60,14 +73,8 @@ fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pix
             weight *= passed(hit.distance);
         }
         if found.is_body {
-            // Not `select`: it would evaluate both.
-            var light: vec3f;
-            if inside {
-                light = wet_body(place, found.normal, found.colour, -direction);
-            } else {
-                light = matte(place, found.normal, found.colour, -direction);
-            }
-            return scattered + weight * light;
+            body = MetBody(true, place, found.normal, found.colour, inside);
+            break;
         }
         let leaving = dot(direction, found.face) > 0.0;
         let is_on_floor = has_floor() && place.y - globals.floor_height < globals.contact_distance;
@@ -78,9 +85,10 @@ fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pix
         if leaving {
             let beyond = touched_body(place, direction);
             if beyond.triangle != NO_TRIANGLE {
-                let body = struck(beyond);
+                let touched = struck(beyond);
                 let at = place + direction * beyond.distance;
-                return scattered + weight * wet_body(at, body.normal, body.colour, -direction);
+                body = MetBody(true, at, touched.normal, touched.colour, true);
+                break;
             }
         }
         let normal = facing_normal(select(found.normal, -found.normal, leaving), -direction);
@@ -98,6 +106,9 @@ fn followed_light(start: vec3f, towards: vec3f, outward: vec3f, spread: f32, pix
             inside = !leaving;
         }
         origin = place;
+    }
+    if body.is_met {
+        return scattered + weight * body_light(body.point, body.normal, body.colour, -direction, body.in_liquid);
     }
     return scattered + weight * environment(origin, direction, spread);
 }
