@@ -104,6 +104,7 @@ fn pack_box(
 
 /// The largest difference of a density from the mean, over the mean.
 fn largest_error(densities: &[f32]) -> f64 {
-    let mean = densities.iter().map(|&density| f64::from(density)).sum::<f64>() / densities.len().max(1) as f64;
+    let mean =
+        densities.iter().map(|&density| f64::from(density)).sum::<f64>() / densities.len().max(1) as f64;
     densities.iter().map(|&density| (f64::from(density) / mean - 1.0).abs()).fold(0.0, f64::max)
 }
