@@ -112,7 +112,7 @@ fn liquid_from_particles() {
     picture.expect("screen-space");
 
     assert!(!harness.draw(WITH_BAR, &moved(good)).difference(&picture).is_small(), "a moved camera");
-    for wrong in [with(drawn, |d| d.liquid = Liquid::honey()), with(drawn, |d| d.radius = 0.012)] {
+    for wrong in [with(drawn, |d| d.liquid = Liquid::milk()), with(drawn, |d| d.radius = 0.012)] {
         let wrong = harness.draw(WITH_BAR, &empty.with_liquid_particles(wrong));
         assert!(!wrong.difference(&picture).is_small(), "another liquid, or spheres that do not merge");
     }

@@ -248,7 +248,7 @@ fn the_ring_of_the_mouse_force_follows_the_pointer() {
 #[test]
 fn foam_belongs_to_the_scene_and_is_exported_with_it() {
     let mut window = with_settings();
-    assert!(!window.state().0.scene.foam.enabled);
+    window.state_mut().0.scene.foam.enabled = false;
     window.get_by_label("Foam and spray").click();
     assert_eq!(actions(&mut window), [Action::Change]);
     let state = &window.state().0;

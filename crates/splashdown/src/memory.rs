@@ -250,6 +250,8 @@ mod tests {
             ] {
                 scene.surface.smoothing_iterations = smoothing_iterations;
                 scene.surface.kernels = kernels;
+                // The foam is not part of a simulation.
+                scene.foam.enabled = false;
                 scene.solver.sort = sort;
                 // Without the particles inside bodies, which the simulation removes.
                 let inventory = crate::inventory(&scene, &|_, _| {}).unwrap();

@@ -21,6 +21,8 @@ use crate::scene::lattice::Sampler;
 const REACH: f32 = 6.0;
 /// Background pressure over rho0 c^2.
 const BACKGROUND: f32 = 0.1;
+/// A lattice that the body fits has at most this density error. It remains as it is, because the packing would disorder it.
+const FITTING: f64 = 0.05;
 /// Maximum number of rounds.
 const MAX_ROUNDS: u32 = 40;
 /// Rounds without progress after which the packing ends.
@@ -79,8 +81,11 @@ fn pack_box(
     let mut closed = scene.clone();
     (closed.domain.min, closed.domain.max, closed.domain.closed) = (low, high, [[true; 2]; 3]);
     let mut relaxation = Relaxation::new(&closed, &first, bodies)?;
-    relaxation.set_background_pressure(BACKGROUND)?;
     let mut least = largest_error(&relaxation.simulation.particles()?.densities);
+    if least <= FITTING {
+        return Ok(0);
+    }
+    relaxation.set_background_pressure(BACKGROUND)?;
     let (mut brake, mut rounds, mut since) = (Brake::default(), 0, 0);
     while rounds < MAX_ROUNDS && since < PATIENCE {
         rounds += 1;
