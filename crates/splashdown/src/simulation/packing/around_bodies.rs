@@ -21,8 +21,9 @@ use crate::scene::lattice::Sampler;
 const REACH: f32 = 6.0;
 /// Background pressure over rho0 c^2.
 const BACKGROUND: f32 = 0.1;
-/// A lattice that the body fits has at most this density error. It remains as it is, because the packing would disorder it.
-const FITTING: f64 = 0.05;
+/// Where no particle is closer to a body than this, in spacings, the lattice fits the bodies and remains as it is, because the
+/// packing would disorder it.
+const FITTING: f32 = 0.45;
 /// Maximum number of rounds.
 const MAX_ROUNDS: u32 = 40;
 /// Rounds without progress after which the packing ends.
@@ -35,7 +36,9 @@ pub(super) fn pack(
     bodies: &[LoadedBody],
     progress: &dyn Fn(f32),
 ) -> Result<u32, SimulationError> {
-    if !sample::is_packed_around_bodies(scene) {
+    let fitting = FITTING * scene.fluid.particle_spacing;
+    let fits = || sample::far_from(bodies, positions, fitting).iter().all(|is_far| *is_far);
+    if !sample::is_packed_around_bodies(scene) || fits() {
         return Ok(0);
     }
     let reach = REACH * scene.fluid.particle_spacing;
@@ -82,9 +85,6 @@ fn pack_box(
     (closed.domain.min, closed.domain.max, closed.domain.closed) = (low, high, [[true; 2]; 3]);
     let mut relaxation = Relaxation::new(&closed, &first, bodies)?;
     let mut least = largest_error(&relaxation.simulation.particles()?.densities);
-    if least <= FITTING {
-        return Ok(0);
-    }
     relaxation.set_background_pressure(BACKGROUND)?;
     let (mut brake, mut rounds, mut since) = (Brake::default(), 0, 0);
     while rounds < MAX_ROUNDS && since < PATIENCE {
