@@ -112,10 +112,14 @@ fn liquid_from_particles() {
     picture.expect("screen-space");
 
     assert!(!harness.draw(WITH_BAR, &moved(good)).difference(&picture).is_small(), "a moved camera");
-    for wrong in [with(drawn, |d| d.liquid = Liquid::milk()), with(drawn, |d| d.radius = 0.012)] {
-        let wrong = harness.draw(WITH_BAR, &empty.with_liquid_particles(wrong));
-        assert!(!wrong.difference(&picture).is_small(), "another liquid, or spheres that do not merge");
-    }
+    let milk = with(drawn, |d| d.liquid = Liquid::milk());
+    let of_milk = harness.draw(WITH_BAR, &empty.with_liquid_particles(milk));
+    let difference = of_milk.difference(&picture);
+    assert!(!difference.is_small(), "another liquid: {difference:?}");
+    // Water is so clear that the shape of its surface hardly shows.
+    let apart = with(milk, |d| d.radius = 0.012);
+    let difference = harness.draw(WITH_BAR, &empty.with_liquid_particles(apart)).difference(&of_milk);
+    assert!(!difference.is_small(), "spheres that do not merge: {difference:?}");
 }
 
 #[test]
