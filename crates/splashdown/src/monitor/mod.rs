@@ -6,10 +6,14 @@
 //! it rises to a new level, and again whenever it doubles above a warning. The steps are not affected: what must be summed
 //! in every step (the work of bodies) is summed by a pass that has the numbers anyway.
 //!
-//! *The largest speed that energy allows* is `sqrt(v0^2 + 2 g h + (2 u)^2)` plus the speed of shaking. v0 is the largest
-//! initial speed of fluid, apart from [single fast particles](outliers), and the largest speed of emitters, h the height of the fluid above the lowest corner (of the
-//! whole domain with dynamic bodies, more with surface tension and adhesion), and u the speed of the fastest point of scripted bodies that came near the fluid so far and of dynamic bodies
-//! at the start; a wall that moves at u reflects fluid at 2 u. A jump does not count as a speed: it would allow any.
+//! *The largest speed that energy allows* is `sqrt(v0^2 + 2 g h + (2 u)^2)` plus the speed of shaking.
+//!
+//! * v0 is the largest initial speed of fluid, apart from single fast particles (`outliers`), and the largest speed of
+//!   emitters.
+//! * h is the height of the fluid above the lowest corner: of the whole domain with dynamic bodies, more with surface tension
+//!   and adhesion.
+//! * u is the speed of the fastest point of scripted bodies that came near the fluid so far, and of dynamic bodies at the
+//!   start; a wall that moves at u reflects fluid at 2 u. A jump does not count as a speed: it would allow any.
 
 mod density;
 mod energy;

@@ -44,8 +44,8 @@ impl ScriptedBodies {
         fastest
     }
 
-    /// The speed of the origin of body `k` in m/s, without that of a jump within a step, which the displacement in a frame does not
-    /// confirm.
+    /// The speed of the origin of body `k` in m/s. The speed of a jump within a step does not count: neither the
+    /// displacement in the frame nor the speed in the last frame confirms it.
     fn steady_speed(&self, k: usize, time: f64, body: &BodyState) -> f32 {
         let now = body.velocity.length();
         let Some((earlier, states)) = &self.before else { return now };

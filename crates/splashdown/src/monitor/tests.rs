@@ -149,14 +149,19 @@ fn a_later_rise_within_a_level_is_reported_again() {
     assert_eq!(observe(f32::NAN), [] as [(Level, Watched); 0], "already at the highest level");
 }
 
-#[test]
-fn overlapping_particles_are_named_as_the_cause_only_if_they_overlap() {
-    let scene = Scene::builder("box", 1.0)
+/// Water 0.4 m deep in a half of a box.
+fn still_water() -> Scene {
+    Scene::builder("box", 1.0)
         .domain([0.0; 3], [0.8, 0.8, 0.4])
         .particle_spacing(0.05)
         .block([0.0; 3], [0.4, 0.4, 0.4])
         .build()
-        .unwrap();
+        .unwrap()
+}
+
+#[test]
+fn overlapping_particles_are_named_as_the_cause_only_if_they_overlap() {
+    let scene = still_water();
     let message = |scale: f32| {
         let mut simulation = crate::Simulation::new(&scene, &Device::Cpu).unwrap();
         let mut particles = simulation.particles().unwrap();
@@ -210,12 +215,7 @@ fn fluid_that_nothing_drives_may_move_by_a_part_of_a_spacing() {
 
 /// Findings of still water with the speeds of its first particles, at the start and after a step.
 fn with_speeds(speeds: &[f32], later: &[f32]) -> (Vec<Alarm>, Vec<Alarm>) {
-    let scene = Scene::builder("box", 1.0)
-        .domain([0.0; 3], [0.8, 0.8, 0.4])
-        .particle_spacing(0.05)
-        .block([0.0; 3], [0.4, 0.4, 0.4])
-        .build()
-        .unwrap();
+    let scene = still_water();
     let mut simulation = crate::Simulation::new(&scene, &Device::Cpu).unwrap();
     let mut particles = simulation.particles().unwrap();
     let mut monitor = simulation.monitor();

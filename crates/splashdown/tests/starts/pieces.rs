@@ -174,3 +174,33 @@ fn an_emitter_inside_the_pool_starts_without_overlap() {
     let fastest = particles.velocities.iter().map(|v| Vec3::from(*v).length()).fold(0.0, f32::max);
     assert!(fastest < 1.5, "{fastest} m/s");
 }
+
+#[test]
+fn a_box_between_walls_starts_at_rest_density() {
+    // 10.5 and 20.4 spacings between the walls.
+    let text = "[scene]\nname = \"between\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [0.525, 1, 1.02]\n[fluid]\n\
+                particle_spacing = 0.05\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.525, 0.6, 1.02]\n";
+    let scene = Scene::parse(text, "between").unwrap_or_else(|errors| panic!("{errors}"));
+    // The lowest and the highest density of particles below the surface, over that at rest.
+    let densities = |positions: &[[f32; 3]]| {
+        let particles = Particles::from_positions(positions.to_vec());
+        let executor = Device::Cpu.executor().unwrap();
+        let mut simulation = Simulation::with_particles(&scene, executor, &particles).unwrap();
+        let rest = simulation.params().rest_density;
+        let found = simulation.particles().unwrap();
+        let inner = found.positions.iter().zip(&found.densities).filter(|(x, _)| x[1] < 0.4);
+        inner.fold((f32::INFINITY, 0.0_f32), |(low, high), (_, density)| {
+            (low.min(density / rest), high.max(density / rest))
+        })
+    };
+    let positions = sample::particles(&scene).unwrap().positions;
+    let (low, high) = densities(&positions);
+    assert!(low > 0.99 && high < 1.01, "{low} {high}");
+    // Control: with layers a spacing apart there are gaps at the walls.
+    let cubic: Vec<[f32; 3]> = (0..10 * 12 * 20)
+        .map(|i| [i % 10, i / 10 % 12, i / 120].map(|k| 0.05 * (k as f32 + 0.5)))
+        .map(|[x, y, z]| [x + 0.0125, y, z + 0.01])
+        .collect();
+    let (low, _) = densities(&cubic);
+    assert!(low < 0.98, "{low}");
+}

@@ -1,8 +1,8 @@
 //! Packs blocks around bodies, between their own faces.
 //!
 //! The particles of a lattice that are outside a body have the volume of the fluid there, but some lie at its surface and
-//! others up to a spacing away. If those at the surface were left out, the fluid would start with gaps around bodies and fall into them.
-//! Here they move until their density is uniform: the faces of the block are closed, so that free surfaces keep their
+//! others up to a spacing away. If those at the surface were left out, the fluid would start with gaps around bodies and
+//! fall into them. Here they move until their density is uniform: the faces of the block are closed, so that free surfaces keep their
 //! places, and a background pressure drives particles into gaps, as in the packing of Colagrossi et al. (2012).
 //!
 //! Only a box around the bodies takes part. Its sides are planes between layers of the lattice, in which the lattice is its
