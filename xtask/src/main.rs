@@ -68,7 +68,7 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   validate [TEST ...] [--quick] [--variant=NAME] [--page]
                     run the physics cases at three resolutions in release mode and write docs/validation-figures.md;
                     --quick: without the finest; --variant: one column of each case, for example dfsph; --page: only add the figures of the last call
-  storms [--scenes N] [--seed N] [--first N] [--continuity] [--workers N] [--binary FILE] [--ignore] [--shipped FACTOR]
+  validate storms, storms [--scenes N] [--seed N] [--first N] [--continuity] [--workers N] [--binary FILE] [--ignore] [--shipped FACTOR]
                     run random scenes, 1,000 by default, and judge their particles by an independent check; a full search
                     writes docs/storms.md (--continuity: only that form of the density; --ignore: with --on-burst ignore; --shipped:
                     the scenes that come with the program, with their spacing multiplied by a factor)

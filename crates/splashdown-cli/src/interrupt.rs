@@ -45,6 +45,13 @@ impl Interrupt {
     }
 }
 
+/// Makes a write beyond the file size limit of the process (`ulimit -f`) fail with an error, as on a full disk. Without this
+/// the signal of the limit ends the program without a message.
+pub fn report_file_size_limit() {
+    #[cfg(unix)]
+    ignored::restore(&[nix::sys::signal::Signal::SIGXFSZ]);
+}
+
 /// Signals that are ignored since the program was started.
 #[cfg(unix)]
 mod ignored {
@@ -56,7 +63,7 @@ mod ignored {
         stopping.filter(|&number| is_ignored(number)).collect()
     }
 
-    /// Ignores these signals again.
+    /// Ignores these signals.
     pub fn restore(signals: &[Signal]) {
         for &number in signals {
             // SAFETY: ignoring a signal installs no code. It fails for invalid signals only, and these are valid.

@@ -45,6 +45,7 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
             return u8::try_from(error.exit_code()).unwrap_or(Exit::Usage as u8);
         }
     };
+    interrupt::report_file_size_limit();
     splashdown_io::set_input_limit(arguments.input_limit);
     match dispatch(&arguments.command).and_then(check_output) {
         Ok(exit) => exit as u8,

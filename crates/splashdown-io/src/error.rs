@@ -181,7 +181,7 @@ pub enum WriteCause {
     #[error("a folder with this name exists")]
     IsAFolder,
     /// The file would exceed the size limit of the file system.
-    #[error("the file is too large for this file system")]
+    #[error("the file is too large for this file system or for the limit of this process (ulimit -f)")]
     TooLarge,
     /// Any other cause; the message of the system describes it.
     #[error("the system reports an error")]

@@ -62,8 +62,8 @@ pub enum SimulationError {
     /// The time step required for stability is below `solver.min_dt`.
     #[error(
         "at {time:.4} s the time step that keeps the simulation stable is below solver.min_dt = {min_dt:.3e} s (largest speed \
-         {max_speed:.3e} m/s, acceleration {max_acceleration:.3e} m/s^2): look for particles placed inside one another, or \
-         lower the speeds or min_dt"
+         {max_speed:.3e} m/s, acceleration {max_acceleration:.3e} m/s^2): {}",
+        cause.as_deref().unwrap_or("look for particles placed inside one another, or lower the speeds or min_dt")
     )]
     StepTooSmall {
         /// Simulated time in seconds.
@@ -74,6 +74,8 @@ pub enum SimulationError {
         max_speed: f32,
         /// The largest acceleration in m/s^2.
         max_acceleration: f32,
+        /// What the monitor of a run found: what is wrong, where, the likely cause, and what to change.
+        cause: Option<String>,
     },
     /// There is not one value per particle.
     #[error(

@@ -214,3 +214,28 @@ fn a_nozzle_under_water_is_reported() {
         assert_eq!(events.filter(warns).count(), usize::from(is_blocked), "at {height} m");
     }
 }
+
+#[test]
+fn a_tap_one_particle_wide_fills_a_tank() {
+    // Particles exactly above one another would pile up to a column, from the floor into the outlet.
+    let forms = ["\"dfsph\"", "\"wcsph\"\ndensity = \"continuity\"", "\"wcsph\"\ndensity = \"summation\""];
+    for method in forms {
+        let text = format!(
+            "[scene]\nname = \"tap\"\nduration = 0.6\nframe_rate = 20\n[domain]\nmin = [0, 0, 0]\nmax = [1, 0.8, 0.4]\n[fluid]\n\
+             particle_spacing = 0.05\n[[emitter]]\nname = \"a\"\nradius = 0.03\nposition = [0.5, 0.6, 0.2]\n\
+             direction = [0, -1, 0]\nspeed = 3\n[solver]\nmethod = {method}\n[surface]\nenabled = false\n"
+        );
+        let scene = Scene::parse(&text, "tap.toml").unwrap();
+        let mut highest = 0.0_f64;
+        for event in Run::new(&scene, RunOptions::new(&scene).with_device(splashdown::Device::Cpu)).unwrap() {
+            match event.unwrap() {
+                Event::Frame(frame) => highest = highest.max(frame.stats.max_speed.into()),
+                Event::Alarm(alarm) => panic!("{method}: {}", alarm.message),
+                Event::Finished(summary) => assert!(summary.stats.emitted > 20, "{method}"),
+                _ => {}
+            }
+        }
+        // From the outlet to the floor: sqrt(3^2 + 2 g 0.6) = 4.6 m/s. Splashes may be twice as fast.
+        assert!((4.0..9.0).contains(&highest), "{method}: {highest} m/s");
+    }
+}

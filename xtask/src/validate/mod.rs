@@ -13,8 +13,9 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
-use crate::layers::{self, Report};
+use crate::layers::{self, Outcome, Report};
 use crate::process::{self, say};
+use crate::storms;
 
 /// Where the tests write the figures of this call.
 const FIGURES: &str = "out/validation";
@@ -26,6 +27,12 @@ const PLOTS: &str = "pictures/validation";
 
 /// The command `validate`.
 pub fn run(arguments: &[String]) -> Result<()> {
+    // Random scenes have their own options and report.
+    if let Some((first, rest)) = arguments.split_first()
+        && first == "storms"
+    {
+        return storms::run(rest);
+    }
     let (options, cases): (Vec<&String>, Vec<&String>) =
         arguments.iter().partition(|argument| argument.starts_with('-'));
     let variant = options.iter().find_map(|option| option.strip_prefix("--variant="));
@@ -37,7 +44,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     };
     if let Some(option) = options.iter().find(|option| !is_known(option.as_str())) {
         bail!(
-            "validate takes names of tests, for example `waves`, or nothing for all; --quick leaves out the finest \
+            "validate takes names of tests, for example `waves`, nothing for all, or storms and its options; --quick leaves out the finest \
              resolution, --variant=NAME runs one column of each case, for example dfsph, --across=60,120 other \
              resolutions, --device=gpu runs on a GPU, and --page only adds the figures of the last call to the page; \
              got {option}"
@@ -72,7 +79,15 @@ pub fn run(arguments: &[String]) -> Result<()> {
                 }
             }
             // Without a limit: a single case takes long at full resolution.
-            layers::tests(&mut command, filter, None)
+            let outcome = layers::tests(&mut command, filter, None)?;
+            if outcome == Outcome::Passed && filter.passed == 0 {
+                let names: Vec<&str> = cases.iter().map(|case| case.as_str()).collect();
+                bail!(
+                    "no case has {} in its name: `cargo xtask validate` runs all of them",
+                    names.join(" or ")
+                );
+            }
+            Ok(outcome)
         });
     }
     if let Some(variant) = variant

@@ -260,6 +260,20 @@ mod linux {
     }
 
     #[test]
+    fn a_limit_of_the_size_of_files_is_reported() -> Outcome {
+        let place = Place::new()?;
+        // Two blocks of 512 bytes.
+        let mut command = Command::new("sh");
+        command
+            .args(["-c", "ulimit -f 2; exec \"$0\" \"$@\""])
+            .arg(assert_cmd::cargo::cargo_bin!("splashdown"));
+        command.args(["run", "small.toml", "--device", "cpu", "--no-pictures", "--out", "out"]);
+        command.current_dir(place.path("."));
+        assert_refused(&command.output()?, 5, &["too large", "ulimit -f"]);
+        Ok(())
+    }
+
+    #[test]
     fn a_full_disk_is_reported_and_complete_frames_remain() -> Outcome {
         let place = Place::new()?;
         let Some(disk) = TinyDisk::mount(place.path("disk"), 128)? else {

@@ -49,3 +49,24 @@ fn a_burst_stops_the_run_and_can_be_resumed() -> Outcome {
     assert!(table.starts_with("time (s),kinetic energy (J)"), "{table}");
     Ok(())
 }
+
+#[test]
+fn a_step_that_becomes_too_short_is_explained() -> Outcome {
+    let place = Place::new()?;
+    let fast = "sound_speed = 3\nmethod = \"wcsph\"\ndensity = \"continuity\"\nnegative_pressure = \"keep\"\nmin_dt = 3e-3";
+    place.write("fast.toml", &SOFT.replace("sound_speed = 0.05", fast))?;
+    let output = place
+        .splashdown(&["run", "fast.toml", "--device", "cpu", "--no-pictures", "--out", "out"])
+        .output()?;
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    let error = message.lines().find(|line| line.starts_with("error: ")).ok_or("no error")?;
+    assert!(
+        error.contains("below solver.min_dt") && error.contains("the speed of sound, 3 m/s, is too low"),
+        "{error}"
+    );
+    assert!(message.contains("Resume with"), "{message}");
+    let stopped = report(&place)?;
+    assert_eq!((&stopped["status"], &stopped["monitor"]["level"]), (&"failed".into(), &"stop".into()));
+    Ok(())
+}

@@ -26,6 +26,7 @@ mod rigid;
 #[cfg(not(feature = "rigid"))]
 #[path = "no_rigid.rs"]
 mod rigid;
+mod scripted;
 mod solid_gradient;
 mod solid_velocity;
 mod types;
@@ -46,10 +47,11 @@ use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, PassDesc, buffer_set
 use splashdown_io::{Mesh, Particles};
 
 use crate::boundary::KernelPair;
-use crate::scene::{Domain, Script};
+use crate::scene::Domain;
 use crate::solid::{DistanceField, RepairReport};
 use crate::state::Params;
 use rigid::Rigid;
+use scripted::ScriptedMotion;
 
 /// Numbers per body in a checkpoint: five vectors, a quaternion and the work.
 const MOTION_COLUMNS: usize = 20;
@@ -188,8 +190,8 @@ pub struct Bodies {
     /// True if forces move a body.
     has_dynamic: bool,
     scripts: Buffer<ScriptSample>,
-    /// The scripts, one per scripted body.
-    host_scripts: Vec<Script>,
+    /// One per scripted body.
+    scripted: Vec<ScriptedMotion>,
     meshes: Vec<BodyMesh>,
     reports: Vec<RepairReport>,
     /// The distance fields, for counting particles inside bodies on the host.
@@ -211,19 +213,19 @@ impl Bodies {
     ) -> Result<Self, GpuError> {
         let mut maps = Vec::new();
         let mut states = Vec::new();
-        let mut host_scripts = Vec::new();
+        let mut scripted = Vec::new();
         for body in &loaded {
             let mut state = body.state;
             place_map(body, params, &mut state, &mut maps);
             state.coupling = state.coupling_of(area(&body.solid.mesh));
             if let Some(script) = &body.script {
-                state.script = host_scripts.len() as u32;
-                host_scripts.push(script.clone());
+                state.script = scripted.len() as u32;
+                scripted.push(ScriptedMotion { script: script.clone(), reach: state.reach });
             }
             states.push(state);
         }
         let rigid = Rigid::new(&loaded, &states, domain);
-        let scripts = vec![bytemuck::Zeroable::zeroed(); host_scripts.len().max(1) * SCRIPT_SAMPLES];
+        let scripts = vec![bytemuck::Zeroable::zeroed(); scripted.len().max(1) * SCRIPT_SAMPLES];
         Ok(Self {
             kernels,
             bodies: executor.create_from("bodies", &states)?,
@@ -235,7 +237,7 @@ impl Bodies {
             unknowns: executor.create("unknowns", viscous::VECTORS * states.len())?,
             has_dynamic: states.iter().any(|state| state.kind == Body::DYNAMIC),
             scripts: executor.create_from("scripts", &scripts)?,
-            host_scripts,
+            scripted,
             meshes: loaded
                 .iter()
                 .map(|body| BodyMesh {
@@ -250,29 +252,31 @@ impl Bodies {
         })
     }
 
-    /// Samples the motion of the scripted bodies during a frame for the device. `start` and `duration` in seconds.
+    /// Samples the motion of the scripted bodies during a frame for the device. `start` and `duration` in seconds. Returns
+    /// the largest speed in m/s of a point of a scripted body in the domain during the frame.
     ///
     /// # Errors
     /// If the device was lost.
-    pub fn begin_frame(&self, executor: &mut Executor, start: f64, duration: f64) -> Result<(), GpuError> {
-        if self.host_scripts.is_empty() {
-            return Ok(());
+    pub fn begin_frame(
+        &self,
+        executor: &mut Executor,
+        start: f64,
+        duration: f64,
+        params: &Params,
+    ) -> Result<f32, GpuError> {
+        if self.scripted.is_empty() {
+            return Ok(0.0);
         }
-        let mut samples = Vec::with_capacity(self.host_scripts.len() * SCRIPT_SAMPLES);
-        for script in &self.host_scripts {
-            for k in 0..SCRIPT_SAMPLES {
-                let time = start + duration * k as f64 / (SCRIPT_SAMPLES - 1) as f64;
-                let pose = script.pose(time);
-                samples.push(ScriptSample {
-                    position: pose.position,
-                    orientation: Vec4::from(pose.orientation),
-                    velocity: pose.velocity,
-                    angular_velocity: pose.angular_velocity,
-                    ..bytemuck::Zeroable::zeroed()
-                });
-            }
+        let domain = (params.domain_min, params.domain_max);
+        let mut fastest = 0.0_f32;
+        let mut samples = Vec::with_capacity(self.scripted.len() * SCRIPT_SAMPLES);
+        for motion in &self.scripted {
+            let of_body = motion.sample(start, duration);
+            fastest = fastest.max(motion.speed_in(&of_body, duration, domain));
+            samples.extend(of_body);
         }
-        executor.write(self.scripts, &samples)
+        executor.write(self.scripts, &samples)?;
+        Ok(fastest)
     }
 
     /// True if bodies can collide, so that the host has to resolve collisions between batches of steps.

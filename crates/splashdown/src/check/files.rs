@@ -3,25 +3,19 @@
 use glam::Vec3;
 use splashdown_io::{Mesh, Particles};
 
-use super::{Built, motion};
+use super::placed::Placed;
+use super::{Built, flow, motion};
 use crate::bodies::{check_scale, mesh_of, owner};
-use crate::flow::{LoadedFlow, outlet};
+use crate::flow::LoadedFlow;
 use crate::sample::{
     self, Added, Filler, SampleError, Sources, file_title, fitted_spacing, mesh_title, typical_spacing,
 };
-use crate::scene::{
-    Body, Domain, Emitter, MeshSource, Motion, Reach, Reported, Scene, Section, grouped, outlet_outside,
-    place, rounded,
-};
+use crate::scene::{Domain, MeshSource, Motion, Reach, Reported, Scene, Section, grouped, place, rounded};
 use crate::solid;
 
 /// Largest relative difference between a file's spacing and the scene's that gives no warning: measured inside the
 /// fluid, and estimated from the distances of neighbours.
 const SPACING_TOLERANCE: [f32; 2] = [0.02, 0.2];
-/// A point is inside a mesh if the absolute winding number exceeds this value; on the surface it is 0.5.
-const INSIDE: f64 = 0.75;
-/// Maximum number of points of an outlet that are tested against bodies.
-const MAX_POINTS: usize = 64;
 /// Number of poses of a scripted body that are tested against the domain.
 const POSES: u32 = 200;
 
@@ -29,48 +23,14 @@ const POSES: u32 = 200;
 /// results for the simulation.
 pub(super) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     let (bodies, meshes, placed) = check_bodies(scene, &root.sections_if_any("body")?);
-    let mut flow = LoadedFlow::default();
-    let emitters = check_emitters(scene, &mut flow, &root.sections_if_any("emitter")?, &placed);
-    let sinks = check_sinks(scene, &mut flow, &root.sections_if_any("sink")?);
+    let mut loaded = LoadedFlow::default();
+    let emitters = flow::check_emitters(scene, &mut loaded, &root.sections_if_any("emitter")?, &placed);
+    let sinks = flow::check_sinks(scene, &mut loaded, &root.sections_if_any("sink")?);
     let fluid = check_fluid(scene, &root.section("fluid")?);
     bodies.and(emitters).and(sinks)?;
-    Built::of(scene).store(meshes, flow, fluid?);
+    flow::warn_of_conflicts(scene, &loaded, &root.sections_if_any("emitter")?);
+    Built::of(scene).store(meshes, loaded, fluid?);
     Ok(())
-}
-
-/// A body's mesh at its pose at t = 0.
-struct Placed<'a> {
-    body: &'a Body,
-    triangles: Vec<[Vec3; 3]>,
-    low: Vec3,
-    high: Vec3,
-}
-
-impl<'a> Placed<'a> {
-    fn new(body: &'a Body, mesh: &Mesh) -> Self {
-        let (position, rotation) = match &body.motion {
-            Motion::Scripted(script) => {
-                let pose = script.pose(0.0);
-                (pose.position, pose.orientation)
-            }
-            _ => (body.mesh.position, body.mesh.rotation),
-        };
-        let vertices: Vec<Vec3> =
-            mesh.vertices.iter().map(|v| position + rotation * Vec3::from(*v)).collect();
-        let corner = |v: u32| vertices.get(v as usize).copied().unwrap_or(Vec3::ZERO);
-        let (low, high) = vertices
-            .iter()
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-        Self { body, triangles: mesh.triangles.iter().map(|t| t.map(corner)).collect(), low, high }
-    }
-
-    /// Whether a point lies inside the mesh, for either orientation of its triangles.
-    fn contains(&self, x: Vec3) -> bool {
-        if x.cmplt(self.low).any() || x.cmpgt(self.high).any() {
-            return false;
-        }
-        solid::winding(&self.triangles, x).abs() > INSIDE
-    }
 }
 
 fn check_bodies<'a>(
@@ -153,66 +113,6 @@ fn warn_outside(scene: &Scene, placed: &Placed<'_>, mesh: &Mesh, section: &Secti
         let hint = format!("the domain is {} to {} m: check position and scale", domain.min, domain.max);
         section.warn("position", message, &hint);
     }
-}
-
-fn check_emitters(
-    scene: &Scene,
-    flow: &mut LoadedFlow,
-    sections: &[Section<'_>],
-    bodies: &[Placed<'_>],
-) -> Result<(), Reported> {
-    let mut result = Ok(());
-    for (emitter, section) in scene.emitters.iter().zip(sections) {
-        result = result.and(check_emitter(scene, flow, emitter, section, bodies));
-    }
-    result
-}
-
-fn check_emitter(
-    scene: &Scene,
-    flow: &mut LoadedFlow,
-    emitter: &Emitter,
-    section: &Section<'_>,
-    bodies: &[Placed<'_>],
-) -> Result<(), Reported> {
-    let layer = flow
-        .add_emitter(emitter, scene)
-        .map_err(|error| section.complain("mesh", error.to_string(), "", ""))?;
-    let (across, up) = outlet::axes(emitter.direction);
-    let every = layer.points.len().div_ceil(MAX_POINTS).max(1);
-    let points: Vec<Vec3> =
-        layer.points.iter().step_by(every).map(|q| emitter.position + q.x * across + q.y * up).collect();
-    let domain = &scene.domain;
-    let slack = 1e-3 * scene.fluid.particle_spacing;
-    if points.iter().any(|x| x.cmplt(domain.min - slack).any() || x.cmpgt(domain.max + slack).any()) {
-        return Err(outlet_outside(section, emitter, domain));
-    }
-    for placed in bodies {
-        let inside = points.iter().filter(|x| placed.contains(**x)).count();
-        if 2 * inside <= points.len() {
-            continue;
-        }
-        let message = format!(
-            "the outlet of emitter {:?} lies inside body {:?}: no fluid can leave it",
-            emitter.name, placed.body.name
-        );
-        let hint = "move the outlet or the body; an outlet may lie on a body's surface";
-        if placed.body.motion == Motion::Static {
-            return Err(section.complain("position", message, "", hint));
-        }
-        section.warn("position", format!("{message} until the body moves away"), hint);
-    }
-    Ok(())
-}
-
-fn check_sinks(scene: &Scene, flow: &mut LoadedFlow, sections: &[Section<'_>]) -> Result<(), Reported> {
-    let mut result = Ok(());
-    for (sink, section) in scene.sinks.iter().zip(sections) {
-        if let Err(error) = flow.add_sink(sink, scene) {
-            result = Err(section.complain("mesh", error.to_string(), "", ""));
-        }
-    }
-    result
 }
 
 /// Creates the particles as the simulation does, and warns of particles that are left out. `None` if the

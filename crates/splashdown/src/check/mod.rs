@@ -7,9 +7,11 @@
 mod built;
 mod derived;
 mod files;
+mod flow;
 mod load;
 mod located;
 mod motion;
+mod placed;
 mod reference;
 mod resolution;
 mod shapes;

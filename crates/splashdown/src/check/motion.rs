@@ -1,4 +1,4 @@
-//! Warnings about bodies that move: jumps, large steps, bodies that do not fit between the walls, and volumes that a piston
+//! Warnings about bodies that move: jumps, high speeds, bodies that do not fit between the walls, and volumes that a piston
 //! closes.
 
 use std::f32::consts::TAU;
@@ -16,8 +16,8 @@ const INTERVALS: u32 = 2000;
 const HALVINGS: u32 = 24;
 /// The smallest jump, in spacings, that is reported.
 const JUMP: f32 = 0.05;
-/// The largest motion per step, in spacings, that is not reported.
-const STEP: f32 = 1.0;
+/// A time step that a body shortens by more than this factor is reported.
+const MUCH_SHORTER: f32 = 10.0;
 /// The largest rotation between two samples of a script, in rad. The device interpolates between the samples.
 const TURN: f32 = std::f32::consts::FRAC_PI_4;
 /// A body may overlap a wall by this many spacings.
@@ -93,8 +93,8 @@ fn refuse_of_turn(
     section: &Section<'_>,
 ) -> Result<(), Reported> {
     let duration = f64::from(scene.duration);
-    let spin = |k: u32| script.pose(duration * f64::from(k) / f64::from(INTERVALS)).angular_velocity.length();
-    let fastest = (0..=INTERVALS).map(spin).fold(0.0, f32::max);
+    let spins = script.times(duration, INTERVALS).map(|time| script.pose(time).angular_velocity.length());
+    let fastest = spins.fold(0.0, f32::max);
     let samples = (SCRIPT_SAMPLES - 1) as f32;
     let angle = fastest * scene.frame_duration() / samples;
     if angle <= TURN {
@@ -114,17 +114,20 @@ fn refuse_of_turn(
     Err(section.complain("turn", message, &allowed, &hint))
 }
 
+/// Warns of a body whose speed shortens the time step much: it moves by at most a spacing per step.
 fn warn_of_speed(scene: &Scene, body: &Body, script: &Script, reach: f32, section: &Section<'_>) {
     let speed = script.max_speed(scene.duration.into(), reach);
-    let dt = Derived::without_particles(scene).dt_estimate;
-    let spacings = speed * dt / scene.fluid.particle_spacing;
-    if spacings > STEP {
+    let mut without = scene.clone();
+    without.bodies.clear();
+    let usual = Derived::without_particles(&without).dt_estimate;
+    let by_speed = scene.solver.cfl_factor * scene.fluid.particle_spacing / speed;
+    let shortened = Derived::without_particles(scene).dt_estimate.min(by_speed);
+    if usual > MUCH_SHORTER * shortened {
         let message = format!(
-            "body {:?} moves by up to {spacings:.1} spacings in a step of about {dt:.1e} s, at {speed:.1} m/s: fluid can pass \
-             through it",
+            "body {:?} moves at up to {speed:.1} m/s, which shortens the time step from {usual:.1e} to {shortened:.1e} s",
             body.name
         );
-        section.warn("move", message, "make its motion slower, or solver.max_dt smaller");
+        section.warn("move", message, "make its motion slower, or keyframes farther apart in time");
     }
 }
 

@@ -15,7 +15,7 @@ struct Nozzle {
     most: u32,
     disc: u32,
     interval: f32,
-    unused: u32,
+    wobble: f32,
 }
 
 struct SinkShape {

@@ -8,6 +8,7 @@
 //! stretches the jet, would separate it into discs. A sink marks the particles inside it as removed (`sink`); their
 //! places in the arrays are reused.
 
+mod conflicts;
 mod emission_schedule;
 mod emit;
 mod inflow_constraint;
@@ -156,6 +157,16 @@ impl LoadedFlow {
             average += emitted as f64 * f64::from(present.clamp(0.0, 1.0));
         }
         (all, average)
+    }
+
+    /// The particles that the emitters add to the fluid until `duration` (s), without those that a sink removes at once.
+    pub(crate) fn planned(&self, duration: f32) -> u64 {
+        let swallowed = self.swallowed();
+        let counts = self.nozzles.iter().enumerate().map(|(k, nozzle)| {
+            let is_swallowed = swallowed.iter().any(|[emitter, _]| *emitter == k);
+            if is_swallowed { 0 } else { outlet::expected(nozzle, duration) }
+        });
+        counts.fold(0, u64::saturating_add)
     }
 
     /// A fingerprint of the emitters and sinks, by which a checkpoint identifies them.

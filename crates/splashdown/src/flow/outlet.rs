@@ -12,6 +12,10 @@ use crate::solid::Solid;
 /// More particles than any scene emits, and small enough that sums do not overflow.
 const UNLIMITED: u32 = u32::MAX / 2;
 
+/// The largest distance in spacings of particles from the axis of an outlet that is one particle wide. Exactly above one
+/// another they would pile up to a rigid column between floor and outlet.
+const WOBBLE: f32 = 0.05;
+
 /// The largest relative error of the flow of an outlet given by a mesh.
 const MOST_MESH_ERROR: f32 = 0.1;
 
@@ -125,7 +129,7 @@ pub(crate) fn nozzle_in(
         most: emitter.max_particles.unwrap_or(UNLIMITED).min(UNLIMITED),
         disc,
         interval: layer.interval,
-        unused: 0,
+        wobble: if points == 1 { WOBBLE * spacing } else { 0.0 },
     };
     Ok((nozzle, layer))
 }

@@ -1,6 +1,6 @@
 //! The elements of the buffers of emitters and sinks.
 
-use glam::{UVec3, Vec3};
+use glam::{UVec3, Vec2, Vec3};
 use splashdown_gpu::gpu_struct;
 
 gpu_struct! {
@@ -36,8 +36,8 @@ gpu_struct! {
         disc: u32,
         /// Distance between layers in m.
         interval: f32,
-        /// Padding.
-        unused: u32,
+        /// How far, at most, its particles are created beside their columns, in m.
+        wobble: f32,
     }
 }
 
@@ -75,6 +75,18 @@ impl Nozzle {
     }
 }
 
+impl Nozzle {
+    /// The place of a particle in a square of [-1, 1], by its id: the sequence R2 of Roberts (2018), which does not repeat.
+    #[inline]
+    pub fn beside(id: u32) -> Vec2 {
+        let fraction = |step: u32| (id.wrapping_mul(step) >> 8) as f32 * (2.0 / 16_777_216.0) - 1.0;
+        Vec2::new(fraction(Self::STEPS[0]), fraction(Self::STEPS[1]))
+    }
+
+    /// The steps of the sequence in units of 2^-32: 1/p and 1/p^2 for the plastic number p.
+    const STEPS: [u32; 2] = [3_242_174_889, 2_447_445_414];
+}
+
 impl SinkShape {
     /// The interior of a box.
     pub const BOX: u32 = 0;
@@ -82,6 +94,26 @@ impl SinkShape {
     pub const BELOW: u32 = 1;
     /// The region in which a map of signed distances is negative.
     pub const MAP: u32 = 2;
+
+    /// Whether it removes a particle at a point in m; `maps` are the nodes of all maps in m.
+    pub fn takes(&self, maps: &[f32], x: Vec3) -> bool {
+        if self.kind == Self::BELOW {
+            return (x - self.low).dot(self.high) < 0.0;
+        }
+        let inside = x.cmpge(self.low).all() && x.cmple(self.high).all();
+        if self.kind == Self::BOX || !inside {
+            return inside;
+        }
+        let at = (x - self.low) / self.cell_size;
+        let c = at.as_uvec3().min(self.nodes - UVec3::splat(2));
+        let f = at - c.as_vec3();
+        let (row, plane) = (self.nodes.x as usize, (self.nodes.x * self.nodes.y) as usize);
+        let first = self.first_node as usize + c.z as usize * plane + c.y as usize * row + c.x as usize;
+        let mix = |a: f32, b: f32, t: f32| a * (1.0 - t) + b * t;
+        let sides = [first, first + plane]
+            .map(|k| mix(mix(maps[k], maps[k + 1], f.x), mix(maps[k + row], maps[k + row + 1], f.x), f.y));
+        mix(sides[0], sides[1], f.z) < 0.0
+    }
 }
 
 /// The words of an emitter in the buffer of schedules. The next unused id follows the words of the last emitter.

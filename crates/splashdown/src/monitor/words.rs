@@ -24,7 +24,14 @@ pub(super) struct Context {
     pub starts_dense: Option<bool>,
     /// In m/s.
     sound_speed: f32,
+    /// The largest acceleration of the shaken domain in m/s^2, if it is violent.
+    shaking: Option<f32>,
 }
+
+/// Shaking is violent from this multiple of gravity, or of [`EARTH`] without gravity.
+const VIOLENT: f32 = 20.0;
+/// Gravity of the earth in m/s^2.
+const EARTH: f32 = 9.81;
 
 /// The sentence of particles that start faster than the others; `others` is the speed in m/s that those allow.
 pub(super) fn outliers(count: usize, speed: f64, others: f64, place: Vec3) -> String {
@@ -57,6 +64,12 @@ impl Context {
             early: f64::from(50.0 * spacing / sound_speed.max(10.0 * reference_speed)),
             starts_dense: None,
             sound_speed,
+            shaking: scene.domain.oscillation.map(|oscillation| oscillation.max_acceleration()).filter(
+                |&acceleration| {
+                    let gravity = scene.gravity.length();
+                    acceleration > VIOLENT * if gravity > 0.0 { gravity } else { EARTH }
+                },
+            ),
         }
     }
 
@@ -156,7 +169,18 @@ impl Context {
         if watched == Watched::ThinPart {
             return "Fluid is stretched, or pressures are too low to hold it together; results there are inaccurate".to_owned();
         }
-        if is_density && !self.is_implicit && allowed_speed > 0.3 * f64::from(self.sound_speed) {
+        if let Some(acceleration) = self.shaking
+            && !matches!(watched, Watched::InsideBodies)
+        {
+            return format!(
+                "Likely cause: the domain is shaken at up to {acceleration:.0} m/s^2. Lower domain.oscillation.amplitude or \
+                 raise its period; solver.cfl_factor (now {}) limits the step",
+                self.cfl_factor
+            );
+        }
+        let is_pressed =
+            is_density || matches!(watched, Watched::Speed | Watched::FastPart | Watched::EnergyGain);
+        if is_pressed && !self.is_implicit && allowed_speed > 0.3 * f64::from(self.sound_speed) {
             return format!(
                 "Likely cause: the speed of sound, {} m/s, is too low for these speeds and depths. Raise solver.sound_speed or \
                  stiffness, or leave them out",

@@ -78,7 +78,7 @@ pub struct Run {
     watched: Vec<bool>,
     /// Particles that had left through open sides at the last note.
     escaped: u32,
-    /// The particles that the emitters would add during the whole scene with nothing in their way.
+    /// The particles that the emitters would add during the whole scene with nothing in their way, without those in sinks.
     planned_emission: u64,
     /// The frames of the whole scene.
     scene_frames: u32,
@@ -104,7 +104,7 @@ enum Stage {
     Steps(u32),
     /// The frame with this number is complete and must be fetched.
     Fetch(u32),
-    /// The fluid has burst.
+    /// The fluid has burst, and the events before the error are not all reported.
     Burst(SimulationError),
     Finish,
     End,
@@ -169,7 +169,7 @@ impl Run {
             watched: scene.bodies.iter().map(|body| matches!(body.motion, Motion::Dynamic { .. })).collect(),
             escaped: simulation.stats().escaped,
             scene_frames: scene.frame_count(),
-            planned_emission: Built::of(scene).emitted(scene).map_or(0, |(count, _)| count),
+            planned_emission: Built::of(scene).flow(scene).map_or(0, |flow| flow.planned(scene.duration)),
             last: simulation.stats(),
             start_time: simulation.stats().time,
             simulation,
@@ -231,7 +231,15 @@ impl Run {
         let begun = Instant::now();
         let outcome = self.simulation.continue_frame();
         self.clock.steps += begun.elapsed();
-        if let Some(stats) = outcome? {
+        let complete = match outcome {
+            Err(error @ SimulationError::StepTooSmall { .. }) => {
+                let error = self.explain(error)?;
+                self.stage = Stage::Burst(error);
+                return Ok(None);
+            }
+            outcome => outcome?,
+        };
+        if let Some(stats) = complete {
             self.particle_steps += f64::from(stats.particles) * f64::from(stats.steps_in_frame);
             self.note_escaped(&stats);
             self.warn_of_pressure(&stats);
@@ -259,6 +267,21 @@ impl Run {
             dt: self.simulation.dt(),
             wall: self.started.elapsed(),
         })))
+    }
+
+    /// Lets the monitor examine the state in which a frame could not be continued, and adds what it finds.
+    fn explain(&mut self, mut error: SimulationError) -> Result<SimulationError, SimulationError> {
+        let particles = self.simulation.particles()?;
+        let inside_bodies = self.simulation.inside_bodies(&particles)?;
+        let bodies = self.simulation.body_states()?;
+        let stats = Stats { inside_bodies, ..self.simulation.stats() };
+        let now = (stats.time, &stats);
+        let alarms = self.simulation.examine(&mut self.monitor, now, &particles, &bodies).alarms;
+        if let (SimulationError::StepTooSmall { cause, .. }, Some(alarm)) = (&mut error, alarms.first()) {
+            *cause = Some(alarm.message.clone());
+        }
+        self.pending_events.extend(alarms.into_iter().map(Event::Alarm));
+        Ok(error)
     }
 
     /// The stage after a frame.

@@ -69,10 +69,23 @@ impl Script {
     /// estimated from samples.
     pub fn max_speed(&self, duration: f64, reach: f32) -> f32 {
         const SAMPLES: u32 = 400;
-        (0..=SAMPLES)
-            .map(|k| self.pose(duration * f64::from(k) / f64::from(SAMPLES)))
+        self.times(duration, SAMPLES)
+            .map(|time| self.pose(time))
             .map(|pose| pose.velocity.length() + reach * pose.angular_velocity.length())
             .fold(0.0, f32::max)
+    }
+
+    /// Times in s up to `duration` at which the motion is examined: `intervals` equal ones, and some between each pair of
+    /// keyframes, which may be much closer together.
+    pub fn times(&self, duration: f64, intervals: u32) -> impl Iterator<Item = f64> {
+        const BETWEEN: u32 = 8;
+        let part = |start: f64, end: f64, k: u32, n: u32| start + (end - start) * f64::from(k) / f64::from(n);
+        let equal = (0..=intervals).map(move |k| part(0.0, duration, k, intervals));
+        let pairs = self.keyframes.windows(2).map(|pair| [pair[0].time, pair[1].time]);
+        let between = pairs
+            .flat_map(move |[start, end]| (0..=BETWEEN).map(move |k| part(start, end, k, BETWEEN)))
+            .filter(move |time| (0.0..=duration).contains(time));
+        equal.chain(between)
     }
 
     fn place(&self, time: f64) -> (DVec3, DQuat) {

@@ -128,6 +128,11 @@ impl Oscillation {
     pub fn max_speed(&self) -> f32 {
         self.amplitude.length() * std::f32::consts::TAU / self.period
     }
+
+    /// The largest acceleration of the domain in m/s^2.
+    pub fn max_acceleration(&self) -> f32 {
+        self.max_speed() * std::f32::consts::TAU / self.period
+    }
 }
 
 /// The fluid: resolution, material and initial shape.

@@ -77,10 +77,13 @@ impl Simulation {
         if let Some(probes) = &mut self.probes {
             probes.reserve(&mut self.executor, seconds)?;
         }
-        if let Some(bodies) = &self.bodies {
-            bodies.begin_frame(&mut self.executor, self.stats.time, f64::from(seconds))?;
-        }
-        self.executor.write(self.fields.frame_times, &StepState::frame_times(seconds, self.stats.time))?;
+        let (start, length) = (self.stats.time, f64::from(seconds));
+        let body_speed = match &self.bodies {
+            Some(bodies) => bodies.begin_frame(&mut self.executor, start, length, &self.params)?,
+            None => 0.0,
+        };
+        let input = StepState::frame_input(seconds, start, body_speed.min(self.params.fastest_body()));
+        self.executor.write(self.fields.frame_input, &input)?;
         self.executor.run(&self.begin)?;
         self.frame = Some(FrameInProgress { duration: seconds, submitted: 0, pending: None, state: None });
         Ok(())
@@ -185,6 +188,7 @@ impl Simulation {
                 min_dt: self.params.min_dt,
                 max_speed: state.max_speed,
                 max_acceleration: state.max_acceleration,
+                cause: None,
             });
         }
         if self.stats.particles == 0 && self.initial > 0 && self.flow.is_none() {

@@ -9,6 +9,7 @@ use crate::boundary::part::Part;
 use crate::checkpoint::Checkpoint;
 use crate::scene::{KernelKind, Scene};
 use crate::schemes::{self, Couplings, Scheme};
+use crate::state::StepState;
 
 /// Water at rest round two bodies, one static and one dynamic.
 const SCENE: &str = r#"
@@ -78,7 +79,7 @@ fn forces(checkpoint: &Checkpoint, executor: Executor, part: Part) -> Forces {
     recording.append(&schemes::part_of_forces(scheme, cells, fields, &couplings, count, part));
     let sums = couplings.bodies.unwrap().sums;
     let executor = &mut simulation.executor;
-    executor.write(fields.frame_times, &[0.01, 0.0]).unwrap();
+    executor.write(fields.frame_input, &StepState::frame_input(0.01, 0.0, 0.0)).unwrap();
     executor.write(sums, &vec![0; sums.len() as usize]).unwrap();
     executor.run(&recording).unwrap();
     let words = executor.read(sums).unwrap();

@@ -151,7 +151,7 @@ impl Simulation {
         let mut recording = Recording::new("sort");
         recording.append(&self.begin);
         self.cells.record_sort(&mut recording, &self.fields, self.fields.sorted_ids);
-        self.executor.write(self.fields.frame_times, &StepState::frame_times(0.0, self.stats.time))?;
+        self.executor.write(self.fields.frame_input, &StepState::frame_input(0.0, self.stats.time, 0.0))?;
         Ok(self.executor.run(&recording)?)
     }
 

@@ -123,7 +123,7 @@ impl Simulation {
         let mut simulation = Self::assemble(scene, executor, capacity, next_id, loaded, &loaded_flow, table)?;
         simulation.initial = initial;
         upload(&mut simulation.executor, &simulation.fields, particles, &simulation.params)?;
-        simulation.executor.write(simulation.fields.frame_times, &StepState::frame_times(0.0, 0.0))?;
+        simulation.executor.write(simulation.fields.frame_input, &StepState::frame_input(0.0, 0.0, 0.0))?;
         simulation.executor.run(&simulation.prime)?;
         simulation.count().await?;
         // The estimate of the scene does not know the velocities of particles from files and programs.

@@ -35,8 +35,8 @@ pub struct Fields {
     pub params: Buffer<Params>,
     /// The state of the step; one entry.
     pub state: Buffer<StepState>,
-    /// Length and start of the frame to begin, in seconds ([`StepState::frame_times`]); two entries.
-    pub frame_times: Buffer<f32>,
+    /// What a frame begins with ([`StepState::frame_input`]); three entries.
+    pub frame_input: Buffer<f32>,
     /// Counters and maxima, [`StepCounters::WORDS`] words.
     pub counters: Buffer<u32>,
     /// Persistent: position in metres; the fourth component is 0 for an active particle, else why it is not active.
@@ -158,7 +158,7 @@ impl Fields {
         Ok(Self {
             params: executor.create_uniform("params", params)?,
             state: executor.create_small("state", &[StepState::zeroed()])?,
-            frame_times: executor.create_from("frame_times", &StepState::frame_times(0.0, 0.0))?,
+            frame_input: executor.create_from("frame_input", &StepState::frame_input(0.0, 0.0, 0.0))?,
             counters: executor.create_from("counters", &[0; StepCounters::WORDS])?,
             positions,
             velocities,
@@ -201,7 +201,7 @@ impl Fields {
     pub fn buffers(&self) -> BufferSet {
         // The names of the fields are compared with the labels in the table.
         let mut set = buffer_set!(self =>
-            params, state, frame_times, counters, positions, velocities, ids, sorted_positions,
+            params, state, frame_input, counters, positions, velocities, ids, sorted_positions,
             sorted_velocities, sorted_ids, densities, accelerations, normals, smooth_normals, corrections, shifts,
             boundary_matrices, solve, stiffness, iterates, free_velocities, predicted, neighbours, solid_gradients, residuals, impulses,
             viscous, viscous_residuals, viscous_products, viscous_directions, viscous_images,

@@ -148,6 +148,11 @@ impl Params {
         by_motion.min(self.max_dt).min(0.125 * h * h / self.viscosity.max(1e-20))
     }
 
+    /// The largest speed of a body in m/s that limits the time step: the step stays well above `min_dt`, which ends a run.
+    pub fn fastest_body(&self) -> f32 {
+        0.1 * self.cfl_factor * self.particle_spacing / self.min_dt
+    }
+
     /// The pressure in Pa at a density in kg/m^3: p = rho0 c0^2 / exponent ((rho/rho0)^exponent - 1) (Cole 1948).
     #[inline(always)]
     pub fn pressure_at(&self, density: f32) -> f32 {

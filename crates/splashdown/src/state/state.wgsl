@@ -20,6 +20,7 @@ struct StepState {
     most_viscous_iterations: u32,
     viscous_residual: f32,
     frame_start: f32,
+    body_speed: f32,
 }
 
 // True if the step completes its frame. Both numbers are stored, so that all passes agree.

@@ -52,13 +52,17 @@ gpu_struct! {
         viscous_residual: f32,
         /// Simulated time at the start of the frame in seconds, from the host.
         frame_start: f32,
+        /// Largest speed of a point of a scripted body in this frame in m/s, from the host. Fluid does not know it before
+        /// the body touches it, which must not be after a step of many spacings.
+        body_speed: f32,
     }
 }
 
 impl StepState {
-    /// The words of the buffer from which a frame begins: its length and its start in seconds.
-    pub fn frame_times(length: f32, start: f64) -> [f32; 2] {
-        [length, start as f32]
+    /// The words of the buffer from which a frame begins: its length and its start in seconds, and the largest speed of
+    /// scripted bodies in it in m/s.
+    pub fn frame_input(length: f32, start: f64, body_speed: f32) -> [f32; 3] {
+        [length, start as f32, body_speed]
     }
 
     /// True if the step completes its frame. Both numbers are stored, so that all passes agree.

@@ -74,16 +74,20 @@ fn compare_states() -> Compare {
     })
 }
 
+/// The speed of a body in m/s that limits the first step of a frame.
+const BODY_SPEED: f32 = 70.0;
+
 /// The frame starts 12.5 s after the run. `stable_dt` may be longer than the parameters allow: they may change between two
 /// frames.
 fn begin(name: &str, length: f32, stable_dt: f32, is_implicit: u32) -> Case {
     let params = Params { particle_count: 1234, is_implicit, ..params(2.0) };
     let old = StepState { done: 1, run_count: 0, steps: 77, stable_dt, ..state(1234) };
-    let limits = limits(&params, old.max_speed.into(), old.max_acceleration.into());
+    let limits = limits(&params, old.max_speed.max(BODY_SPEED).into(), old.max_acceleration.into());
     let stable = limits.into_iter().fold(f64::from(stable_dt), f64::min) as f32;
     let expected = StepState {
         time: 12.5,
         frame_start: 12.5,
+        body_speed: BODY_SPEED,
         stable_dt: stable,
         frame_duration: length,
         remaining: length,
@@ -103,7 +107,7 @@ fn begin(name: &str, length: f32, stable_dt: f32, is_implicit: u32) -> Case {
         pass: pass("begin"),
         name: name.into(),
         size: DispatchSize::Groups(1),
-        input: vec![Data::Params(params), Data::F32(vec![length, 12.5]), Data::State(old)],
+        input: vec![Data::Params(params), Data::F32(vec![length, 12.5, BODY_SPEED]), Data::State(old)],
         compare: compare_states(),
         oracle: Box::new(move |out| same_state(&state_of(&out[0]), &expected)),
         control: |input| {
@@ -118,7 +122,7 @@ fn end_step_cases() -> Vec<Case> {
     let calm = [0.5, 10.0, 0.002, 0.0];
     let implicit = Params { is_implicit: 1, implicit_viscosity: 0.0, ..params(2.0) };
     let viscous = Params { implicit_viscosity: 0.02, ..implicit };
-    let ways: [(&str, StepState, [f32; 4], Params); 14] = [
+    let ways: [(&str, StepState, [f32; 4], Params); 15] = [
         ("grown by a tenth", StepState { stable_dt: 1e-4, ..state }, calm, params(2.0)),
         ("limited by sound", state, calm, params(2.0)),
         ("limited by acceleration", state, [0.5, 1e6, 0.0, 0.0], params(2.0)),
@@ -126,6 +130,12 @@ fn end_step_cases() -> Vec<Case> {
         ("limited by viscosity", state, calm, Params { viscosity: 5.0, ..params(2.0) }),
         ("below the smallest", state, [0.5, 1e9, 0.0, 0.0], Params { min_dt: 1e-5, ..params(2.0) }),
         ("implicit, grown by half", state, [0.5, 1e6, 0.0, 4.0], implicit),
+        (
+            "implicit, limited by a fast body",
+            StepState { body_speed: 90.0, ..state },
+            [0.5, 1e6, 0.0, 4.0],
+            implicit,
+        ),
         ("implicit, limited by the pressure", state, [0.5, 1e6, 0.0, 1e4], implicit),
         ("implicit and viscous, limited by the pressure", state, [0.5, 1e6, 0.0, 1e4], viscous),
         (
@@ -232,7 +242,8 @@ pub fn next_state(
     } else {
         1.1 * p(state.stable_dt)
     };
-    let least = limits(params, speed, acceleration).into_iter().fold(grown, f64::min);
+    let least =
+        limits(params, speed.max(p(state.body_speed)), acceleration).into_iter().fold(grown, f64::min);
     let stable = least.max(p(params.min_dt));
     // In the same order as the pass: the remaining time is a difference, and another rounding would change it.
     let complete = state.dt >= state.remaining;

@@ -1,6 +1,6 @@
 //! Emitters and sinks.
 
-use glam::{DVec3, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{DVec3, DVec4, UVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown::flow::{EmissionSchedule, Nozzle, SinkShape};
 use splashdown::state::{DEAD_DRAINED, DEAD_UNBORN, StepCounters};
 use splashdown_gpu::DispatchSize;
@@ -32,7 +32,7 @@ fn nozzles() -> Vec<Nozzle> {
         most: 1000,
         disc: 1,
         interval: 0.97 * SPACING,
-        unused: 0,
+        wobble: 0.0,
     };
     let rectangle = Nozzle {
         back: Vec3::new(0.13, 0.31, 0.47),
@@ -42,6 +42,7 @@ fn nozzles() -> Vec<Nozzle> {
         points: 8,
         disc: 0,
         speed: 0.9,
+        wobble: 0.11 * SPACING,
         ..disc
     };
     let late = Nozzle { start: 5.0, first_point: 20, points: 3, ..disc };
@@ -152,7 +153,15 @@ fn emit() -> Case {
     let mut blocked = 0;
     for (k, nozzle) in nozzles[..2].iter().enumerate() {
         for place in 0..nozzle.points as usize {
-            let q = points[nozzle.first_point as usize + place].as_dvec4();
+            let id = if k == 0 { 9000 } else { 9012 } + place as u32;
+            let beside = [1, 2].map(|power| {
+                // The sequence R2, in 24 bits.
+                let step = (4_294_967_296.0 / 1.324_717_957_244_746_f64.powi(power)).round();
+                let fraction = (f64::from(id) * step / 4_294_967_296.0).fract();
+                f64::from(nozzle.wobble) * (2.0 * fraction - 1.0)
+            });
+            let mut q = points[nozzle.first_point as usize + place].as_dvec4();
+            q += DVec4::new(beside[0], beside[1], 0.0, 0.0);
             let x = nozzle.back.as_dvec3()
                 + (0.004_f32 as f64 + q.z) * nozzle.direction.as_dvec3()
                 + q.x * nozzle.across.as_dvec3()

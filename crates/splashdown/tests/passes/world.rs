@@ -93,6 +93,7 @@ pub fn state(particles: usize) -> StepState {
         most_viscous_iterations: 4,
         viscous_residual: 0.003,
         frame_start: 0.69,
+        body_speed: 0.0,
     }
 }
 

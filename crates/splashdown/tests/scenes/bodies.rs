@@ -240,6 +240,23 @@ fn motion_that_jumps_or_is_too_fast_is_reported() {
 }
 
 #[test]
+fn keyframes_close_together_are_reported_as_a_fast_motion() {
+    let keyframes = |later: f32| {
+        let body = format!(
+            "scale = 0.2\nposition = [1.5, 0.7, 0.5]\n[[body.keyframe]]\ntime = 0.3333\nposition = [1.5, 0.7, 0.5]\n\
+             [[body.keyframe]]\ntime = {later}\nposition = [1.5, 0.3, 0.5]\n"
+        );
+        let fast = |text: &String| {
+            text.contains("body \"b\" moves at up to") && text.contains("shortens the time step")
+        };
+        warnings("", &body).iter().any(fast)
+    };
+    // 0.4 m in a thousandth of a second, which is a part of the time between two of equally distributed samples.
+    assert!(keyframes(0.3343));
+    assert!(!keyframes(1.3));
+}
+
+#[test]
 fn a_rotation_is_resolved_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");

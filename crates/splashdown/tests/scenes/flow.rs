@@ -99,3 +99,46 @@ fn a_closed_domain_that_the_fluid_fills_gives_a_warning() {
     let sink = "[[sink]]\nname = \"drain\"\nmin = [0, 0, 0]\nmax = [0.1, 0.1, 0.1]";
     assert!(!scene(0.95, "", &format!("{TAP}\n{sink}")).contains(adds));
 }
+
+/// The warnings of a scene in a file with these emitters and sinks.
+fn warnings(text: &str) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, format!("{CUBE}\n{text}\n")).unwrap();
+    Scene::load(&path).unwrap().warnings.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn emitters_in_sinks_are_reported() {
+    let reported = |sink: &str| {
+        let expected = "emitter \"tap\" lies in sink \"drain\"";
+        warnings(&format!("{TAP}\n[[sink]]\nname = \"drain\"\n{sink}"))
+            .iter()
+            .any(|text| text.contains(expected))
+    };
+    assert!(reported("min = [0.3, 0.8, 0.3]\nmax = [0.7, 1, 0.7]"));
+    assert!(reported("shape = \"below\"\npoint = [0, 0.95, 0]\nnormal = [0, 1, 0]"));
+    assert!(reported("shape = \"mesh\"\nmesh = \"cube\"\nscale = 0.4\nposition = [0.5, 0.9, 0.5]"));
+    // In front of the outlet, and over a small part of it.
+    assert!(!reported("min = [0.3, 0, 0.3]\nmax = [0.7, 0.3, 0.7]"));
+    assert!(!reported("min = [0.58, 0, 0]\nmax = [1, 1, 1]"));
+}
+
+#[test]
+fn outlets_that_cross_are_reported() {
+    let reported = |other: &str| {
+        let second =
+            format!("[[emitter]]\nname = \"jet\"\nradius = 0.1\ndirection = [1, 0, 0]\nspeed = 1\n{other}");
+        let expected = "emitters \"tap\" and \"jet\" cross";
+        warnings(&format!("{TAP}\n{second}")).iter().any(|text| text.contains(expected))
+    };
+    assert!(reported("position = [0.5, 0.9, 0.5]"));
+    assert!(!reported("position = [0.2, 0.5, 0.5]"));
+    // One after the other.
+    let later = "position = [0.5, 0.9, 0.5]\nstart = 0.2";
+    assert!(reported(later));
+    let tap = format!(
+        "{TAP}\nend = 0.1\n[[emitter]]\nname = \"jet\"\nradius = 0.1\ndirection = [1, 0, 0]\nspeed = 1\n{later}"
+    );
+    assert!(!warnings(&tap).iter().any(|text| text.contains("cross")));
+}

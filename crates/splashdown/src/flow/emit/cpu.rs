@@ -2,7 +2,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::EmitBindings;
 use crate::cells::Grid;
-use crate::flow::EmissionSchedule;
+use crate::flow::{EmissionSchedule, Nozzle};
 use crate::state::Params;
 
 /// The smallest distance of a new particle from others, in spacings.
@@ -30,7 +30,9 @@ pub(super) fn emit(buffers: EmitBindings<'_>) {
         let first = nozzle.first_point as usize;
         for (place, q) in points[first..first + nozzle.points as usize].iter().enumerate() {
             let forward = (distance + q.z) * nozzle.direction;
-            let x = nozzle.back + forward + q.x * nozzle.across + q.y * nozzle.up;
+            let id = schedule[EmissionSchedule::ID] + place as u32;
+            let beside = q.xy() + nozzle.wobble * Nozzle::beside(id);
+            let x = nozzle.back + forward + beside.x * nozzle.across + beside.y * nozzle.up;
             if !is_free(params, grid, cell_start, positions, x) {
                 schedule[EmissionSchedule::BLOCKED] += 1;
                 continue;
@@ -38,7 +40,7 @@ pub(super) fn emit(buffers: EmitBindings<'_>) {
             let slot = schedule[EmissionSchedule::SLOT] as usize + place;
             positions[slot] = x.extend(0.0);
             velocities[slot] = (nozzle.speed * nozzle.direction).extend(params.rest_density);
-            ids[slot] = schedule[EmissionSchedule::ID] + place as u32;
+            ids[slot] = id;
             densities[slot] = Vec2::new(params.rest_density, 0.0);
             schedule[EmissionSchedule::EMITTED] += 1;
         }

@@ -24,6 +24,12 @@ fn is_free(x: vec3<f32>) -> bool {
     return true;
 }
 
+// As Nozzle::beside.
+fn place_beside(id: u32) -> vec2<f32> {
+    let steps = vec2(3242174889u, 2447445414u);
+    return vec2<f32>((id * steps) >> vec2(8u)) * (2.0 / 16777216.0) - 1.0;
+}
+
 @compute @workgroup_size(64)
 fn emit(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
@@ -41,16 +47,18 @@ fn emit(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) 
     }
     let q = points[i];
     let distance = bitcast<f32>(atomicLoad(&schedules[w + SCHEDULE_DISTANCE]));
-    let x = nozzle.back + (distance + q.z) * nozzle.direction + q.x * nozzle.across + q.y * nozzle.up;
+    let place = i - nozzle.first_point;
+    let id = atomicLoad(&schedules[w + SCHEDULE_ID]) + place;
+    let beside = q.xy + nozzle.wobble * place_beside(id);
+    let x = nozzle.back + (distance + q.z) * nozzle.direction + beside.x * nozzle.across + beside.y * nozzle.up;
     if (!is_free(x)) {
         atomicAdd(&schedules[w + SCHEDULE_BLOCKED], 1u);
         return;
     }
-    let place = i - nozzle.first_point;
     let slot = atomicLoad(&schedules[w + SCHEDULE_SLOT]) + place;
     positions[slot] = vec4(x, 0.0);
     velocities[slot] = vec4(nozzle.speed * nozzle.direction, params.rest_density);
-    ids[slot] = atomicLoad(&schedules[w + SCHEDULE_ID]) + place;
+    ids[slot] = id;
     densities[slot] = vec2(params.rest_density, 0.0);
     atomicAdd(&schedules[w + SCHEDULE_EMITTED], 1u);
 }

@@ -27,9 +27,11 @@ use relaxation::Relaxation;
 
 /// The largest density error that is left as it is, over the rest density.
 pub(crate) const TOLERANCE: f32 = 0.02;
-/// The same for fluid that was packed around bodies: below the tolerance, because the weight of the fluid moves the layers
-/// of a summed density closer together afterwards.
-const PACKED_TOLERANCE: f32 = 0.75 * TOLERANCE;
+/// The part of it for fluid that was packed around bodies, because the weight of the fluid moves the layers of a summed
+/// density closer together afterwards.
+const PACKED: f32 = 0.75;
+/// The tolerance for fluid without weight. It expands from a denser packing, and nothing stops it afterwards.
+const WEIGHTLESS_TOLERANCE: f32 = 0.1 * TOLERANCE;
 /// The name of the task for reports of progress.
 const TASK: &str = "initial packing";
 /// Maximum number of rounds.
@@ -122,12 +124,14 @@ pub(super) fn relax(
         relaxation = Relaxation::new(scene, &particles.positions, bodies)?;
         density = relaxation.density(&particles.positions)?;
     }
-    let limit = if packed { PACKED_TOLERANCE } else { TOLERANCE };
+    let is_weightless = scene.gravity == Vec3::ZERO && scene.domain.oscillation.is_none();
+    let tolerance = if is_weightless { WEIGHTLESS_TOLERANCE } else { TOLERANCE };
+    let limit = if packed { PACKED * tolerance } else { tolerance };
     if density.excess > limit && most_rounds > 0 {
         let positions = std::mem::take(&mut particles.positions);
         let rest = |part: f32| progress(TASK, if packed { 0.5 + 0.5 * part } else { part });
         (particles.positions, density) =
-            relaxation.run(positions, density, most_rounds, &mut packing.rounds, &rest)?;
+            relaxation.run(positions, density, tolerance, most_rounds, &mut packing.rounds, &rest)?;
     }
     if packing.rounds > 0 {
         let moved = |(a, b): (&[f32; 3], &[f32; 3])| Vec3::from(*a).distance(Vec3::from(*b));

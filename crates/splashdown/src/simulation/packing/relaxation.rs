@@ -4,23 +4,23 @@ use glam::{Vec3, Vec4};
 use splashdown_gpu::{CpuExecutor, block_on};
 use splashdown_io::Particles;
 
-use super::{InitialDensity, TOLERANCE};
+use super::InitialDensity;
 use crate::bodies::{Body, LoadedBody};
 use crate::scene::{DensityMode, InitialPressure, Method, NegativePressure, Scene, SurfaceTension};
 use crate::state::CARRIED;
 use crate::{Simulation, SimulationError, sample};
 
-/// The density error at which the relaxation ends, over the rest density.
-const TARGET: f32 = 0.5 * TOLERANCE;
+/// The density error at which the relaxation ends, over the tolerance.
+const TARGET: f32 = 0.5;
 /// Rounds without progress after which the relaxation ends.
 const PATIENCE: u32 = 40;
 /// Steps per round.
 const STEPS: f32 = 4.0;
 
-/// An estimate of the completed part of a relaxation in [0, 1]: of the rounds, or of the way to the target, whichever is
-/// farther. Errors fall by a factor per round.
-fn completed_part(rounds: u32, most_rounds: u32, before: f32, now: f32) -> f32 {
-    let way = (before / now.max(TARGET)).ln() / (before / TARGET).ln();
+/// An estimate of the completed part of a relaxation in [0, 1]: of the rounds, or of the way from the density error `before`
+/// to the target, whichever is farther. Errors fall by a factor per round.
+fn completed_part(rounds: u32, most_rounds: u32, [before, now, target]: [f32; 3]) -> f32 {
+    let way = (before / now.max(target)).ln() / (before / target).ln();
     way.max(rounds as f32 / most_rounds.max(1) as f32).clamp(0.0, 1.0)
 }
 
@@ -72,20 +72,23 @@ impl Relaxation {
         })
     }
 
-    /// Relaxes the particles; returns the best positions and their density.
+    /// Relaxes the particles to half of the tolerance; returns the best positions and their density.
     pub fn run(
         &mut self,
         first: Vec<[f32; 3]>,
         before: InitialDensity,
+        tolerance: f32,
         most_rounds: u32,
         rounds: &mut u32,
         progress: &dyn Fn(f32),
     ) -> Result<(Vec<[f32; 3]>, InitialDensity), SimulationError> {
         let (mut best, mut least) = (first, before);
         let (mut brake, mut since) = (Brake::default(), 0);
-        let complete = |rounds: u32, excess: f32| completed_part(rounds, most_rounds, before.excess, excess);
+        let target = TARGET * tolerance;
+        let complete =
+            |rounds: u32, excess: f32| completed_part(rounds, most_rounds, [before.excess, excess, target]);
         progress(0.0);
-        while *rounds < most_rounds && since < PATIENCE && least.excess > TARGET {
+        while *rounds < most_rounds && since < PATIENCE && least.excess > target {
             *rounds += 1;
             let Some(particles) = self.round(best.len())? else { break };
             let density = self.density(&particles.positions)?;

@@ -4,13 +4,14 @@
 
 @compute @workgroup_size(1)
 fn begin() {
-    let length = frame_times[0];
+    let length = frame_input[0];
     state.frame_duration = length;
-    state.frame_start = frame_times[1];
+    state.frame_start = frame_input[1];
+    state.body_speed = frame_input[2];
     state.time = state.frame_start;
     state.remaining = length;
     // The parameters may have changed since the last step.
-    let longest = longest_step(state.max_speed, state.max_acceleration);
+    let longest = longest_step(max(state.max_speed, state.body_speed), state.max_acceleration);
     state.stable_dt = max(min(state.stable_dt, longest), params.min_dt);
     state.dt = step_length(state.stable_dt, length, true);
     state.done = 0u;

@@ -1,14 +1,15 @@
 use super::BeginBindings;
 
 pub(super) fn begin(buffers: BeginBindings<'_>) {
-    let BeginBindings { params, frame_times, state } = buffers;
-    let length = frame_times[0];
+    let BeginBindings { params, frame_input, state } = buffers;
+    let length = frame_input[0];
     state.frame_duration = length;
-    state.frame_start = frame_times[1];
+    state.frame_start = frame_input[1];
+    state.body_speed = frame_input[2];
     state.time = state.frame_start;
     state.remaining = length;
     // The parameters may have changed since the last step.
-    let longest = params.longest_step(state.max_speed, state.max_acceleration);
+    let longest = params.longest_step(state.max_speed.max(state.body_speed), state.max_acceleration);
     state.stable_dt = state.stable_dt.min(longest).max(params.min_dt);
     state.dt = params.step_length(state.stable_dt, length, true);
     state.done = 0;

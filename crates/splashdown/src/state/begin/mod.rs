@@ -13,7 +13,7 @@ bindings! {
     /// The buffers of `begin.wgsl`.
     pub(super) struct BeginBindings {
         params: uniform Params,
-        frame_times: read [f32],
+        frame_input: read [f32],
         state: write StepState,
     }
 }
