@@ -132,6 +132,9 @@ impl Session {
                 } else if alarm.level >= Level::Warning {
                     reporter.note(&alarm.message);
                 }
+                // There is no further frame if the time step became too short.
+                let highest = &mut self.report.monitor.level;
+                *highest = alarm.level.max(*highest);
                 // An alarm consists of numbers and words, which can always be represented.
                 self.report.monitor.alarms.extend(serde_json::to_value(&alarm));
             }
