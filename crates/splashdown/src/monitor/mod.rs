@@ -100,6 +100,8 @@ pub struct Monitor {
     reference_speed: f64,
     /// The same without the initial speeds of the fluid.
     driven_speed: f64,
+    /// The largest speed of an emitter in m/s.
+    emitted_speed: f64,
     outliers: Outliers,
     scripted: ScriptedBodies,
     /// The largest speed of a scripted body so far, and of dynamic bodies at the start, in m/s.
@@ -167,6 +169,7 @@ impl Monitor {
             account: EnergyAccount::new(scene, params, derived.reference_speed.into()),
             reference_speed: with(initial),
             driven_speed: with(initial.min(emitted * emitted)),
+            emitted_speed: emitted.into(),
             outliers: Outliers::default(),
             scripted: ScriptedBodies::new(reaches.collect(), params.support_radius),
             body_speed,
@@ -284,7 +287,7 @@ impl Monitor {
     /// Separates single particles that start much faster than the others, and reports them. The others may be faster than
     /// the scene says: those of a program.
     fn find_outliers(&mut self, time: f64, particles: &Particles) -> Option<Alarm> {
-        let (outliers, others) = Outliers::find(particles, self.driven_speed)?;
+        let (outliers, others) = Outliers::find(particles, self.driven_speed, self.emitted_speed)?;
         if outliers.ids().is_empty() {
             self.reference_speed = self.reference_speed.max(others);
             return None;

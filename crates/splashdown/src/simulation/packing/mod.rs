@@ -14,6 +14,7 @@
 
 mod around_bodies;
 mod relaxation;
+mod settling;
 
 use glam::Vec3;
 use serde::Serialize;
@@ -134,6 +135,10 @@ pub(super) fn relax(
             relaxation.run(positions, density, tolerance, most_rounds, &mut packing.rounds, &rest)?;
     }
     if packing.rounds > 0 {
+        let steps = settling::settle(scene, &mut particles.positions, bodies)?;
+        if steps > 0 {
+            density = Relaxation::new(scene, &particles.positions, bodies)?.density(&particles.positions)?;
+        }
         let moved = |(a, b): (&[f32; 3], &[f32; 3])| Vec3::from(*a).distance(Vec3::from(*b));
         packing.moved = first.iter().zip(&particles.positions).map(moved).fold(0.0, f32::max);
         packing.after = Some(density);

@@ -7,7 +7,7 @@ use splashdown_io::Particles;
 use super::InitialDensity;
 use crate::bodies::{Body, LoadedBody};
 use crate::scene::{DensityMode, InitialPressure, Method, NegativePressure, Scene, SurfaceTension};
-use crate::state::CARRIED;
+use crate::schemes::Scheme;
 use crate::{Simulation, SimulationError, sample};
 
 /// The density error at which the relaxation ends, over the tolerance.
@@ -37,13 +37,31 @@ impl Relaxation {
         positions: &[[f32; 3]],
         bodies: &[LoadedBody],
     ) -> Result<Self, SimulationError> {
-        let still = without_motion(scene);
+        Self::of(scene, explicit(without_motion(scene)), positions, bodies)
+    }
+
+    /// As [`new`](Self::new), with the implicit pressure of `dfsph`.
+    pub fn with_implicit_pressure(
+        scene: &Scene,
+        positions: &[[f32; 3]],
+        bodies: &[LoadedBody],
+    ) -> Result<Self, SimulationError> {
+        Self::of(scene, without_motion(scene), positions, bodies)
+    }
+
+    fn of(
+        scene: &Scene,
+        still: Scene,
+        positions: &[[f32; 3]],
+        bodies: &[LoadedBody],
+    ) -> Result<Self, SimulationError> {
         let still_bodies: Vec<LoadedBody> = bodies.iter().map(LoadedBody::at_rest).collect();
         let particles =
             Particles::from_positions(positions.to_vec()).with_ids((0..positions.len() as u32).collect());
         let executor = CpuExecutor::new().into();
+        let carried = Scheme::new(&still).carried();
         let simulation =
-            block_on(Simulation::with_bodies(&still, executor, &particles, still_bodies, CARRIED))?;
+            block_on(Simulation::with_bodies(&still, executor, &particles, still_bodies, carried))?;
         let is_integrated =
             scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity;
         let counts = (is_integrated && !bodies.is_empty()).then(|| {
@@ -112,15 +130,24 @@ impl Relaxation {
         Ok(executor.write(fields.params, &[*params])?)
     }
 
+    /// Takes one step and returns the particles; `None` if there are no longer `expected` ones.
+    pub fn step(&mut self, expected: usize) -> Result<Option<Particles>, SimulationError> {
+        self.advance(self.simulation.dt(), expected)
+    }
+
     /// Takes the steps of a round and returns the particles; `None` if there are no longer `expected` ones.
     pub fn round(&mut self, expected: usize) -> Result<Option<Particles>, SimulationError> {
-        let stats = self.simulation.advance(STEPS * self.simulation.dt())?;
+        self.advance(STEPS * self.simulation.dt(), expected)
+    }
+
+    fn advance(&mut self, seconds: f32, expected: usize) -> Result<Option<Particles>, SimulationError> {
+        let stats = self.simulation.advance(seconds)?;
         let particles = self.simulation.particles()?;
         Ok((stats.escaped == 0 && particles.len() == expected).then_some(particles))
     }
 
     /// Sets all velocities to zero.
-    fn stop(&mut self) -> Result<(), SimulationError> {
+    pub fn stop(&mut self) -> Result<(), SimulationError> {
         let velocities = self.simulation.fields.velocities;
         let mut values: Vec<Vec4> = block_on(self.simulation.executor.fetch(velocities))?;
         values.iter_mut().for_each(|v| *v = Vec4::new(0.0, 0.0, 0.0, v.w));
@@ -149,6 +176,14 @@ impl Brake {
     }
 }
 
+/// The scene with a pressure by the density of each particle.
+fn explicit(mut still: Scene) -> Scene {
+    if still.solver.method == Method::Dfsph {
+        still.solver.method = Method::Wcsph;
+    }
+    still
+}
+
 /// The scene at rest: only the pressure of its particles acts.
 fn without_motion(scene: &Scene) -> Scene {
     let mut still = scene.clone();
@@ -163,9 +198,6 @@ fn without_motion(scene: &Scene) -> Scene {
     (still.fluid.meshes, still.fluid.files) = (Vec::new(), Vec::new());
     still.fluid.initial_pressure = InitialPressure::Zero;
     still.fluid.material.viscosity = 1e-6;
-    if still.solver.method == Method::Dfsph {
-        still.solver.method = Method::Wcsph;
-    }
     still.solver.density = DensityMode::Summation;
     still.solver.cfl_factor = still.solver.cfl_factor.min(0.3);
     still.solver.negative_pressure = NegativePressure::Clamp;
