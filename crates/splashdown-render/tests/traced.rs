@@ -560,7 +560,7 @@ fn samples_of_several_frames_are_averaged() {
         let Harness { device, queue, renderer } = &mut harness;
         let mut target = Offscreen::new(device, queue, SIZE).unwrap();
         target.submit_samples(renderer, first, 0..2).unwrap();
-        let ticket = target.submit_from(renderer, second, 2).unwrap();
+        let ticket = target.submit_from(renderer, second, 2).unwrap().expect("a picture of one tile");
         Picture { size: SIZE, rgba: target.collect(ticket).unwrap() }
     };
     let (blurred, at_left) = (draw(&left, &right), draw(&left, &left));
