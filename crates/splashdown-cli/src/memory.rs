@@ -3,6 +3,7 @@
 use splashdown::scene::{Derived, Scene};
 use splashdown::{Device, memory_forecast, neighbour_search_forecast};
 use splashdown_gpu::list_adapters;
+use splashdown_run::picture_memory;
 
 use crate::exit::{Exit, Failure};
 use crate::human;
@@ -25,6 +26,33 @@ pub fn check(scene: &Scene, device: &Device) -> Result<(), Failure> {
     }
     let message = format!(
         "the scene needs about {} of memory and {} are available: choose a larger fluid.particle_spacing, or close other programs",
+        human::bytes(needed),
+        human::bytes(available)
+    );
+    Err(Failure::new(Exit::Device, message))
+}
+
+/// Refuses pictures that do not fit into memory. Devices with their own memory report that they have too little when a
+/// picture is drawn.
+///
+/// # Errors
+/// [`Exit::Device`], with the required and the available memory.
+pub fn check_picture(size: [u32; 2]) -> Result<(), Failure> {
+    let forecast = picture_memory(size);
+    let Some(available) = available() else { return Ok(()) };
+    let draws_on_cpu = || list_adapters().iter().all(|adapter| adapter.software);
+    // Listing adapters takes a moment.
+    let needed = match forecast.host + forecast.device > available && draws_on_cpu() {
+        true => forecast.host + forecast.device,
+        false => forecast.host,
+    };
+    if needed <= available {
+        return Ok(());
+    }
+    let message = format!(
+        "pictures of {} x {} pixels need about {} of memory and {} are available: draw smaller pictures, or close other programs",
+        size[0],
+        size[1],
         human::bytes(needed),
         human::bytes(available)
     );

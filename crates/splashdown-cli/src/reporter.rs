@@ -33,7 +33,7 @@ impl ConsoleReporter {
     pub fn close(&self, outcome: RunOutcome, timing: bool) -> Result<Exit, Failure> {
         self.bar.clear();
         let results = partial_results(&outcome);
-        let RunOutcome { end, folder, last_frame, files, films, .. } = outcome;
+        let RunOutcome { end, folder, last_frame, files, films, picture_timings, .. } = outcome;
         let closing = films.iter().map(|film| film.path.clone()).chain([folder.report()]);
         let closing: Vec<String> = closing.map(|path| path.display().to_string()).collect();
         match end {
@@ -42,6 +42,9 @@ impl ConsoleReporter {
                 self.line(&Line::finished(&numbers, triangles, closing));
                 if timing {
                     self.print(&format!("\n{}", summary::passes(&numbers.timings, numbers.steps)));
+                    if picture_timings.pictures > 0 && !picture_timings.passes.passes.is_empty() {
+                        self.print(&format!("\n{}", summary::picture_passes(&picture_timings)));
+                    }
                 }
                 self.print(&format!("\nFinished.\n{}", summary::numbers(&numbers)));
                 self.print(&format!("\n{}", summary::files(folder.root(), &files, &films)));

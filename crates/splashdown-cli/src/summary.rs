@@ -7,6 +7,7 @@ use splashdown::Stats;
 use splashdown::run::Summary;
 use splashdown_gpu::Timings;
 use splashdown_io::WrittenFile;
+use splashdown_run::PictureTimings;
 
 use crate::{console, human};
 
@@ -172,23 +173,34 @@ pub fn files(root: &Path, files: &[WrittenFile], films: &[WrittenFile]) -> Strin
     format!("Written to {}:\n{}", root.display(), lines.join("\n"))
 }
 
-/// Time per pass, the slowest first.
+/// Time per pass of the simulation, the slowest first.
 pub fn passes(timings: &Timings, steps: u64) -> String {
+    table(timings, steps, ("pass", "dispatches", "step"))
+}
+
+/// Time per pass of the pictures, the slowest first.
+pub fn picture_passes(timings: &PictureTimings) -> String {
+    table(&timings.passes, timings.pictures, ("pass of pictures", "passes", "picture"))
+}
+
+/// Numbers per step or per picture.
+fn table(timings: &Timings, times: u64, (pass, runs, whole): (&str, &str, &str)) -> String {
     let mut passes: Vec<_> = timings.passes.iter().collect();
     passes.sort_by_key(|(_, time)| std::cmp::Reverse(time.total));
     let total = timings.total().as_secs_f64();
-    let per_step = |seconds: f64| 1000.0 * seconds / steps.max(1) as f64;
-    let mut text = "| pass | dispatches per step | ms per step | share |\n|---|---:|---:|---:|\n".to_owned();
+    let per_whole = |seconds: f64| 1000.0 * seconds / times.max(1) as f64;
+    let mut text =
+        format!("| {pass} | {runs} per {whole} | ms per {whole} | share |\n|---|---:|---:|---:|\n");
     for (label, time) in passes {
         let seconds = time.total.as_secs_f64();
         text += &format!(
             "| {label} | {:.2} | {:.3} | {:.1} % |\n",
-            time.count as f64 / steps.max(1) as f64,
-            per_step(seconds),
+            time.count as f64 / times.max(1) as f64,
+            per_whole(seconds),
             if total > 0.0 { 100.0 * seconds / total } else { 0.0 }
         );
     }
-    text + &format!("| all | | {:.3} | |", per_step(total))
+    text + &format!("| all | | {:.3} | |", per_whole(total))
 }
 
 #[cfg(test)]

@@ -6,17 +6,42 @@ use crate::Ticket;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// The picture has no pixels, or exceeds the limit of the device.
+    /// The picture has no pixels, or a side that exceeds the limit: that of the device for [`Renderer::draw`](crate::Renderer::draw),
+    /// 32,768 for [`Offscreen`](crate::Offscreen).
     #[error(
-        "a picture of {width} x {height} pixels cannot be drawn: each side must be between 1 and {limit} on this device"
+        "a picture of {width} x {height} pixels cannot be drawn: each side must be between 1 and {limit}"
     )]
     PictureSize {
         /// Requested width in pixels.
         width: u32,
         /// Requested height in pixels.
         height: u32,
-        /// Largest side that the device supports.
+        /// Largest side.
         limit: u32,
+    },
+    /// The picture has too many pixels to be put together from tiles.
+    #[error(
+        "a picture of {width} x {height} pixels cannot be drawn: at most {} million pixels are allowed; reduce a side",
+        limit / 1_000_000
+    )]
+    TooManyPixels {
+        /// Requested width in pixels.
+        width: u32,
+        /// Requested height in pixels.
+        height: u32,
+        /// Largest number of pixels.
+        limit: u64,
+    },
+    /// The host has too little memory for the picture.
+    #[error(
+        "there is not enough memory for a picture of {width} x {height} pixels, {} MiB; reduce its size or free memory",
+        (4 * u64::from(*width) * u64::from(*height)).div_ceil(1 << 20)
+    )]
+    PictureMemory {
+        /// Requested width in pixels.
+        width: u32,
+        /// Requested height in pixels.
+        height: u32,
     },
     /// WebGPU does not support this number of samples per pixel.
     #[error("{given} samples per pixel were requested; WebGPU supports 1 and 4")]

@@ -2,6 +2,7 @@
 
 use crate::glass::panes_of;
 use crate::globals::{EdgeGlobals, Globals};
+use crate::tiling::Tile;
 use crate::{
     BodyBuffers, Camera, Domain, DrawnDroplets, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice,
     DrawnSurface, Floor, Quality, RenderError, Sky, SurfaceStyle, Tank, TracedMeshes,
@@ -123,6 +124,12 @@ impl<'a> Frame<'a> {
         }
     }
 
+    /// Whether a liquid refracts the scene behind it.
+    pub(crate) fn has_liquid(&self) -> bool {
+        let has_mesh = self.surface.is_some_and(|drawn| drawn.style != SurfaceStyle::Lines);
+        has_mesh || self.liquid_particles.is_some()
+    }
+
     /// The number of samples if rays are traced.
     pub(crate) fn traced_samples(&self) -> Option<u32> {
         let (_, quality) = self.traced?;
@@ -144,8 +151,9 @@ impl<'a> Frame<'a> {
     }
 
     /// The uniforms of a sample of a picture with traced rays.
-    pub(crate) fn sample_globals(&self, size: [u32; 2], sample: u32) -> Result<Globals, RenderError> {
-        let mut globals = self.globals(size, true)?;
+    pub(crate) fn sample_globals(&self, tile: Tile, sample: u32) -> Result<Globals, RenderError> {
+        let size = tile.tiling.picture();
+        let mut globals = self.picture_globals(size, true)?;
         let Some((meshes, quality)) = self.traced else { return Ok(globals) };
         quality.check()?;
         let [width, height] = size.map(|side| side as f32);
@@ -169,6 +177,7 @@ impl<'a> Frame<'a> {
         }
         (globals.water_root, globals.body_root) = meshes.roots();
         globals.body_heights = meshes.body_heights();
+        tile.fill(&mut globals);
         Ok(globals)
     }
 
@@ -191,7 +200,23 @@ impl<'a> Frame<'a> {
     pub const SUN: [f32; 3] = [-0.55, 0.85, -0.35];
 
     /// Checks the frame and computes the uniforms of the shaders.
-    pub(crate) fn globals(&self, size: [u32; 2], target_is_srgb: bool) -> Result<Globals, RenderError> {
+    pub(crate) fn globals(&self, tile: Tile, target_is_srgb: bool) -> Result<Globals, RenderError> {
+        let mut globals = self.picture_globals(tile.tiling.picture(), target_is_srgb)?;
+        tile.fill(&mut globals);
+        Ok(globals)
+    }
+
+    /// Pixels around a tile of a picture of this size that its passes read.
+    pub(crate) fn border(&self, size: [u32; 2]) -> Result<u32, RenderError> {
+        let Some(drawn) = &self.liquid_particles else { return Ok(0) };
+        let view = self.camera.view(size[0] as f32 / size[1] as f32)?;
+        let pixel_angle = 2.0 * view.up.length() / size[1] as f32;
+        let nearest = view.eye.clamp(self.domain.min.into(), self.domain.max.into());
+        Ok(drawn.border(view.eye.distance(nearest).max(view.near), pixel_angle))
+    }
+
+    /// The uniforms of a picture in one piece.
+    fn picture_globals(&self, size: [u32; 2], target_is_srgb: bool) -> Result<Globals, RenderError> {
         let [width, height] = size.map(|side| side as f32);
         let view = self.camera.view(width / height)?;
         self.domain.check()?;
@@ -221,6 +246,7 @@ impl<'a> Frame<'a> {
             shadow_min: shadow_min.into(),
             shadow_size: shadow_size.into(),
             picture_size: [width, height],
+            target_size: [width, height],
             ray_offset: 2e-5 * extent.length(),
             contact_distance: 0.006 * extent.length(),
             glass_thickness: around.glass_thickness,
@@ -308,7 +334,7 @@ mod tests {
 
     #[test]
     fn the_shadow_rectangle_contains_the_shadows_of_all_corners() {
-        let globals = frame().globals([300, 200], true).unwrap();
+        let globals = frame().globals(Tile::whole([300, 200]), true).unwrap();
         let sun = Vec3::from(globals.sun);
         for corner in frame().domain.corners() {
             let hit = corner - sun * ((corner.y - globals.floor_height) / sun.y);
@@ -320,8 +346,9 @@ mod tests {
 
     #[test]
     fn a_sun_below_the_horizon_is_refused() {
-        let error = Frame { sun: [0.0, -1.0, 0.0], ..frame() }.globals([3, 2], true).unwrap_err();
+        let error =
+            Frame { sun: [0.0, -1.0, 0.0], ..frame() }.globals(Tile::whole([3, 2]), true).unwrap_err();
         assert!(error.to_string().contains("horizon"), "{error}");
-        assert!(Frame { sun: [0.0; 3], ..frame() }.globals([3, 2], true).is_err());
+        assert!(Frame { sun: [0.0; 3], ..frame() }.globals(Tile::whole([3, 2]), true).is_err());
     }
 }

@@ -166,6 +166,8 @@ pub(crate) enum Bind {
     /// A texture loaded by the vertex shader without a sampler.
     VertexTexture,
     Texture,
+    /// A texture with several layers.
+    TextureLayers,
     /// A texture of any float format, loaded without a sampler.
     Texels,
     /// A texture of integers with 1 or several samples per pixel.
@@ -190,6 +192,7 @@ pub(crate) fn bind_group_layout(device: &Device, label: &str, bindings: &[Bind])
                 Bind::Storage | Bind::VertexTexture => ShaderStages::VERTEX,
                 Bind::FragmentStorage
                 | Bind::Texture
+                | Bind::TextureLayers
                 | Bind::Texels
                 | Bind::Integers { .. }
                 | Bind::Depths { .. }
@@ -201,6 +204,11 @@ pub(crate) fn bind_group_layout(device: &Device, label: &str, bindings: &[Bind])
                     buffer(BufferBindingType::Storage { read_only: true })
                 }
                 Bind::Texture => texture(TextureSampleType::Float { filterable: true }, false),
+                Bind::TextureLayers => BindingType::Texture {
+                    sample_type: TextureSampleType::Float { filterable: true },
+                    view_dimension: TextureViewDimension::D2Array,
+                    multisampled: false,
+                },
                 Bind::VertexTexture | Bind::Texels => {
                     texture(TextureSampleType::Float { filterable: false }, false)
                 }

@@ -41,6 +41,11 @@ impl<'a> Recorder<'a> {
         Recorder { encoder, timer }
     }
 
+    /// For what is not a pass.
+    pub fn encoder(&mut self) -> &mut CommandEncoder {
+        self.encoder
+    }
+
     /// Ends the picture.
     pub fn finish(self) {
         if let Some(timer) = self.timer {

@@ -17,9 +17,10 @@ use crate::shadow::Shadow;
 use crate::slice::Slice;
 use crate::surface::Surface;
 use crate::targets::{FoamTargets, MeshTargets, Targets};
+use crate::tiling::Tile;
 use crate::trace::TracedPicture;
 use crate::{Frame, RenderError, SurfaceStyle};
-use splashdown_gpu::PassTimer;
+use splashdown_gpu::{PassTimer, Timings};
 use std::ops::Range;
 use std::time::Duration;
 use wgpu::{
@@ -40,6 +41,14 @@ pub struct PassTime {
     pub label: &'static str,
     /// Milliseconds, the sum over all passes of that label.
     pub milliseconds: f32,
+}
+
+/// What is drawn of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// Only the scene behind a liquid, which other tiles refract.
+    BehindLiquid,
+    All,
 }
 
 /// Draws frames into textures of one format. It owns the pipelines, so create it once and reuse it.
@@ -85,6 +94,8 @@ pub struct Renderer {
     timer: Option<PassTimer>,
     /// The times of the latest picture that have been read back.
     pass_times: Vec<PassTime>,
+    /// Those of all pictures.
+    timings: Timings,
 }
 
 impl Renderer {
@@ -131,6 +142,7 @@ impl Renderer {
             targets: None,
             timer: None,
             pass_times: Vec::new(),
+            timings: Timings::default(),
         })
     }
 
@@ -156,10 +168,27 @@ impl Renderer {
     /// The read-back is asynchronous: times arrive a few pictures late, and only if the device is
     /// polled, which every submission does.
     pub fn pass_times(&mut self) -> &[PassTime] {
-        if let Some(times) = self.timer.as_mut().and_then(|timer| timer.collect().pop()) {
-            self.pass_times = sums(&times);
+        let groups = self.timer.as_mut().map(PassTimer::collect).unwrap_or_default();
+        for &(label, time) in groups.iter().flatten() {
+            self.timings.add(label, time);
+        }
+        if let Some(latest) = groups.last() {
+            self.pass_times = sums(latest);
         }
         &self.pass_times
+    }
+
+    /// The times of all passes that have been read back since the last call, of all pictures: see
+    /// [`set_timing`](Self::set_timing). An [`Offscreen`](crate::Offscreen) waits for every submission while they
+    /// are measured, so that none is left out.
+    pub fn take_timings(&mut self) -> Timings {
+        self.pass_times();
+        std::mem::take(&mut self.timings)
+    }
+
+    /// Whether passes are measured.
+    pub(crate) fn is_timed(&self) -> bool {
+        self.timer.is_some()
     }
 
     /// Records a picture of `size` pixels into `target`, a view of a texture of that size and of
@@ -181,22 +210,37 @@ impl Renderer {
         frame: &Frame<'_>,
     ) -> Result<(), RenderError> {
         check_size(&self.device, size)?;
-        if let Some(samples) = frame.traced_samples() {
-            return self.draw_samples(encoder, target, size, frame, 0..samples);
+        let tile = Tile::whole(size);
+        match frame.traced_samples() {
+            Some(samples) => self.draw_samples(encoder, target, tile, frame, 0..samples),
+            None => self.draw_tile(encoder, target, tile, frame, Extent::All),
         }
-        let mut globals = frame.globals(size, self.format.is_srgb())?;
+    }
+
+    /// Records a tile of a picture into `target`, a view of a texture of the tiles' size.
+    pub(crate) fn draw_tile(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        target: &TextureView,
+        tile: Tile,
+        frame: &Frame<'_>,
+        extent: Extent,
+    ) -> Result<(), RenderError> {
+        let size = tile.tiling.texture();
+        let mut globals = frame.globals(tile, self.format.is_srgb())?;
         globals.splat_margin = margin(&self.device, size) as f32;
         if let Some(surface) = &frame.surface {
             surface.buffers.check_style(&self.device, surface.style)?;
         }
         let behind = frame.domain.edges_behind(globals.eye.into());
         let globals = self.bind_globals(bytemuck::bytes_of(&globals));
-        if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
-            self.targets = Some(Targets::new(&self.device, size, self.format, self.sample_count));
+        let layers = if frame.has_liquid() { tile.tiling.count() } else { 1 };
+        if self.targets.as_ref().is_none_or(|targets| !targets.suit(size, layers)) {
+            self.targets = Some(Targets::new(&self.device, size, layers, self.format, self.sample_count));
         }
-        let has_mesh = frame.surface.is_some_and(|drawn| drawn.style != SurfaceStyle::Lines);
+        let surface = frame.surface.filter(|drawn| drawn.style != SurfaceStyle::Lines);
         if let Some(targets) = &mut self.targets
-            && has_mesh
+            && surface.is_some()
             && targets.mesh.is_none()
         {
             targets.mesh = Some(MeshTargets::new(&self.device, size, self.format, self.sample_count));
@@ -207,7 +251,7 @@ impl Renderer {
         {
             targets.foam = Some(FoamTargets::new(&self.device, size, self.sample_count));
         }
-        self.overlay.prepare(&self.device, &self.queue, size, frame)?;
+        self.overlay.prepare(&self.device, &self.queue, tile, frame)?;
         // Collects the times read back so far, so that the timer can measure this picture.
         self.pass_times();
         let Some(targets) = &self.targets else { return Ok(()) };
@@ -222,8 +266,7 @@ impl Renderer {
         let foam = frame.foam.map(|drawn| self.foam.bind(&self.device, &drawn)).unwrap_or_default();
         let droplets =
             frame.droplets.map(|drawn| self.droplets.bind(&self.device, &drawn)).unwrap_or_default();
-        let surface = frame.surface.filter(|drawn| drawn.style != SurfaceStyle::Lines);
-        let has_liquid = surface.is_some() || frame.liquid_particles.is_some();
+        let has_liquid = frame.has_liquid();
         let (has_panes, has_edges) = frame.sides(has_liquid);
         let scene = |pass: &mut RenderPass<'_>| {
             pass.set_bind_group(0, &globals, &[]);
@@ -263,7 +306,7 @@ impl Renderer {
         }
         if has_liquid && targets.samples.is_none() {
             let mut pass = recorder.cleared("scene copy", target, Color::BLACK);
-            self.scene_copy.record(&self.device, &mut pass, targets);
+            self.scene_copy.record(&self.device, &mut pass, &targets.scene);
         }
         let layer = targets.foam.as_ref().filter(|_| !foam.is_empty());
         if has_liquid && let Some(layer) = layer {
@@ -272,6 +315,13 @@ impl Renderer {
             pass.set_bind_group(0, &globals, &[]);
             pass.set_bind_group(1, &self.shadow.environment, &[]);
             self.foam.record(&mut pass, &foam, Kinds::UnderWater);
+        }
+        if has_liquid {
+            targets.scenes.record(recorder.encoder(), tile.index);
+        }
+        if extent == Extent::BehindLiquid {
+            recorder.finish();
+            return Ok(());
         }
         if let Some(drawn) = &surface {
             let groups = [&globals, &self.shadow.environment];
@@ -337,33 +387,32 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records some samples of a picture with traced rays; the last one completes it.
+    /// Records some samples of a tile with traced rays; the last one completes it.
     pub(crate) fn draw_samples(
         &mut self,
         encoder: &mut CommandEncoder,
         target: &TextureView,
-        size: [u32; 2],
+        tile: Tile,
         frame: &Frame<'_>,
         samples: Range<u32>,
     ) -> Result<(), RenderError> {
-        check_size(&self.device, size)?;
         let Some((meshes, quality)) = frame.traced else { return Ok(()) };
         quality.check()?;
         let globals = samples
             .clone()
-            .map(|sample| frame.sample_globals(size, sample))
+            .map(|sample| frame.sample_globals(tile, sample))
             .collect::<Result<Vec<_>, _>>()?;
-        let of_result = frame.globals(size, self.format.is_srgb())?;
+        let of_result = frame.globals(tile, self.format.is_srgb())?;
         let globals: Vec<BindGroup> =
             globals.iter().map(|globals| self.bind_globals(bytemuck::bytes_of(globals))).collect();
         let of_result = self.bind_globals(bytemuck::bytes_of(&of_result));
-        self.overlay.prepare(&self.device, &self.queue, size, frame)?;
+        self.overlay.prepare(&self.device, &self.queue, tile, frame)?;
         self.pass_times();
         let (device, layout, format) = (&self.device, &self.globals_layout, self.format);
         let floor_light = &self.shadow.floor_light;
         let traced =
             self.traced.get_or_insert_with(|| TracedPicture::new(device, layout, floor_light, format));
-        traced.prepare(device, size);
+        traced.prepare(device, tile.tiling.texture());
         let trees = traced.bind(device, meshes);
         let mut recorder = Recorder::new(encoder, self.timer.as_mut());
         for (sample, globals) in samples.clone().zip(&globals) {

@@ -1,7 +1,10 @@
 //! Textures that depend on the size of the picture.
 
 use crate::pipeline::DEPTH;
-use wgpu::{Device, Extent3d, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor};
+use wgpu::{
+    CommandEncoder, Device, Extent3d, Texture, TextureFormat, TextureUsages, TextureView,
+    TextureViewDescriptor, TextureViewDimension,
+};
 
 pub(crate) const THICKNESS_FORMAT: TextureFormat = TextureFormat::R16Float;
 /// Two integers per normal: see `surface/normal_code.wgsl`.
@@ -17,6 +20,8 @@ pub(crate) struct Targets {
     pub depth: TextureView,
     /// The picture without the liquid.
     pub scene: TextureView,
+    /// That of every tile, because refraction reads from all of them.
+    pub scenes: Scenes,
     /// Length of the view ray inside the liquid, at half resolution.
     pub thickness: TextureView,
     /// Relative distance of the nearest body, at half resolution.
@@ -48,22 +53,94 @@ pub(crate) struct FoamTargets {
 }
 
 impl Targets {
-    pub fn new(device: &Device, size: [u32; 2], format: TextureFormat, sample_count: u32) -> Targets {
+    /// Textures of this size; `layers`: the number of scenes.
+    pub fn new(
+        device: &Device,
+        size: [u32; 2],
+        layers: u32,
+        format: TextureFormat,
+        sample_count: u32,
+    ) -> Targets {
         let half = size.map(|side| side.div_ceil(2));
         let drawn = TextureUsages::RENDER_ATTACHMENT;
         let read = drawn | TextureUsages::TEXTURE_BINDING;
         let make = |label, size, format, samples, usage| texture(device, label, size, format, samples, usage);
+        let scene = texture_of_layers(device, "scene", size, 1, format, read | TextureUsages::COPY_SRC);
         Targets {
             size,
             samples: (sample_count > 1).then(|| make("samples", size, format, sample_count, drawn)),
             depth: make("depth", size, DEPTH, sample_count, read),
-            scene: make("scene", size, format, 1, read),
+            scene: scene.create_view(&TextureViewDescriptor::default()),
+            scenes: Scenes::new(device, scene, layers),
             thickness: make("thickness", half, THICKNESS_FORMAT, 1, read),
             solid: make("distance of bodies", half, THICKNESS_FORMAT, 1, read),
             mesh: None,
             foam: None,
         }
     }
+}
+
+impl Targets {
+    /// Whether these textures are of this size, with enough layers for the scenes.
+    pub fn suit(&self, size: [u32; 2], layers: u32) -> bool {
+        self.size == size && self.scenes.count >= layers
+    }
+}
+
+/// The scenes of all tiles in the layers of one texture.
+#[derive(Debug)]
+pub(crate) struct Scenes {
+    /// All layers.
+    pub view: TextureView,
+    /// The scene of the tile that is drawn.
+    scene: Texture,
+    /// Absent in a picture of one tile.
+    layers: Option<Texture>,
+    count: u32,
+}
+
+impl Scenes {
+    fn new(device: &Device, scene: Texture, count: u32) -> Scenes {
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let Extent3d { width, height, .. } = scene.size();
+        let make = || texture_of_layers(device, "scenes", [width, height], count, scene.format(), usage);
+        let layers = (count > 1).then(make);
+        let view = layers.as_ref().unwrap_or(&scene).create_view(&TextureViewDescriptor {
+            dimension: Some(TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        Scenes { view, scene, layers, count }
+    }
+
+    /// Copies the scene of a tile to its layer. Drivers of lavapipe resolve several samples per pixel only into the first
+    /// layer of a texture.
+    pub fn record(&self, encoder: &mut CommandEncoder, tile: u32) {
+        let Some(layers) = &self.layers else { return };
+        let mut layer = layers.as_image_copy();
+        layer.origin.z = tile;
+        encoder.copy_texture_to_texture(self.scene.as_image_copy(), layer, self.scene.size());
+    }
+}
+
+/// A two-dimensional texture with several layers.
+fn texture_of_layers(
+    device: &Device,
+    label: &str,
+    [width, height]: [u32; 2],
+    layers: u32,
+    format: TextureFormat,
+    usage: TextureUsages,
+) -> Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: Extent3d { width, height, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
 }
 
 impl MeshTargets {

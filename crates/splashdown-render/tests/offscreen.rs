@@ -54,17 +54,53 @@ fn a_ticket_is_valid_for_its_own_target_only() {
 #[test]
 fn unsupported_sizes_are_refused_with_the_limit() {
     let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
-    let limit = device.limits().max_texture_dimension_2d;
-    for size in [[0, 20], [20, 0], [limit + 1, 20]] {
+    for size in [[0, 20], [20, 0], [Offscreen::MAX_SIDE + 1, 20]] {
         let error = Offscreen::new(&device, &queue, size).unwrap_err();
-        assert!(error.to_string().contains(&format!("between 1 and {limit}")), "{error}");
+        assert!(error.to_string().contains("between 1 and 32768"), "{error}");
     }
+    let error = Offscreen::new(&device, &queue, [Offscreen::MAX_SIDE; 2]).unwrap_err();
+    assert!(error.to_string().contains("at most 268 million pixels"), "{error}");
+    // A texture of the caller is limited by the device.
+    let limit = device.limits().max_texture_dimension_2d;
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let view = colour_texture(&device, [30, 20]);
+    let error = renderer.draw(&mut encoder, &view, [limit + 1, 20], &frame(0.0)).unwrap_err();
+    assert!(error.to_string().contains(&format!("between 1 and {limit}")), "{error}");
     let error = Renderer::new(&device, &queue, Offscreen::FORMAT, 3).unwrap_err();
     assert!(matches!(error, RenderError::SampleCount { given: 3 }));
     let mut target = Offscreen::new(&device, &queue, [1, 1]).unwrap();
     assert_eq!(target.render_to_rgba(&mut renderer, &frame(0.0)).unwrap().len(), 4);
     let mut other = Renderer::new(&device, &queue, wgpu::TextureFormat::Bgra8Unorm, 4).unwrap();
     assert!(matches!(target.submit(&mut other, &frame(0.0)), Err(RenderError::Format { .. })));
+}
+
+fn colour_texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: Offscreen::FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+#[test]
+fn pictures_larger_than_a_texture_of_the_device_are_drawn() {
+    let Some(Harness { device, queue, mut renderer }) = common::harness() else { return };
+    let width = device.limits().max_texture_dimension_2d + 1000;
+    if width > Offscreen::MAX_SIDE {
+        eprintln!("SKIPPED: the device has textures of {width} pixels");
+        return;
+    }
+    let mut target = Offscreen::new(&device, &queue, [width, 20]).unwrap();
+    let rgba = target.render_to_rgba(&mut renderer, &frame(0.0)).unwrap();
+    assert_eq!(rgba.len(), 4 * width as usize * 20);
+    // Nothing is left out: the picture is opaque.
+    assert!(rgba.chunks_exact(4).all(|pixel| pixel[3] == 255));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use splashdown::scene::{PictureKind, Scene};
+use splashdown::scene::{Output, PictureKind, Scene};
 use splashdown_io::{Film, FilmOptions, FrameWriter, IoError, Job, WrittenFile, picture};
 
 use crate::{Reporter, RunFolder};
@@ -16,6 +16,17 @@ const SLOW_MOTION_RATE: f32 = 30.0;
 /// The frame rate of the film of a scene.
 pub fn frame_rate(scene_frame_rate: f32) -> f32 {
     if scene_frame_rate > MAX_FRAME_RATE { SLOW_MOTION_RATE } else { scene_frame_rate }
+}
+
+/// Why pictures of this size cannot be made into a film.
+pub fn size_problem([width, height]: [u32; 2]) -> Option<String> {
+    let limit = Output::MAX_FILM_SIDE;
+    (width.max(height) > limit).then(|| {
+        format!(
+            "no film was made: its pictures have {width} x {height} pixels, and a film has at most {limit} a side; draw \
+             smaller pictures for a film"
+        )
+    })
 }
 
 /// Whether the encoder of films is installed.
@@ -99,7 +110,13 @@ pub(crate) fn finish(films: &[Arc<Film>], reporter: &mut dyn Reporter) -> Vec<Wr
 
 #[cfg(test)]
 mod tests {
-    use super::frame_rate;
+    use super::{frame_rate, size_problem};
+
+    #[test]
+    fn large_pictures_have_no_film() {
+        assert_eq!(size_problem([8192, 8192]), None);
+        assert!(size_problem([16, 9000]).is_some_and(|problem| problem.contains("16 x 9000")));
+    }
 
     #[test]
     fn fast_scenes_are_shown_in_slow_motion() {

@@ -66,9 +66,9 @@ pub use checkpoints::{FoundCheckpoint, find_checkpoint, recent_checkpoints};
 pub use error::RunError;
 pub use folder::RunFolder;
 pub use frames::{CompleteFrame, FrameSummary};
-pub use outcome::{RunEnd, RunOutcome};
+pub use outcome::{PictureTimings, RunEnd, RunOutcome};
 #[cfg(not(target_arch = "wasm32"))]
-pub use pictures::{Beside, FinishedFrame, FinishedRun, Orbit, Painter};
+pub use pictures::{Beside, FinishedFrame, FinishedRun, Orbit, Painter, picture_memory};
 #[cfg(not(target_arch = "wasm32"))]
 pub use playback::{PlayedFrame, RunFrames, reported_scene, scene_of_run};
 pub use recorder::Recorder;
@@ -78,3 +78,4 @@ pub use request::RunRequest;
 #[cfg(not(target_arch = "wasm32"))]
 pub use session::{Session, run};
 pub use settings::RunSettings;
+pub use splashdown_render::MemoryForecast;

@@ -1,9 +1,20 @@
 //! The result of a run.
 
 use splashdown::run::Summary;
+use splashdown_gpu::Timings;
 use splashdown_io::WrittenFile;
 
 use crate::{CompleteFrame, RunError, RunFolder};
+
+/// The times of the passes of pictures on the device.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct PictureTimings {
+    /// Number of pictures.
+    pub pictures: u64,
+    /// The sums over all of them.
+    pub passes: Timings,
+}
 
 /// How a run ended.
 #[derive(Debug)]
@@ -34,6 +45,8 @@ pub struct RunOutcome {
     pub files: Vec<WrittenFile>,
     /// The films.
     pub films: Vec<WrittenFile>,
+    /// The times of the passes of the pictures, if they were measured.
+    pub picture_timings: PictureTimings,
     /// Whether the folder contains a checkpoint to resume from.
     pub resumable: bool,
 }

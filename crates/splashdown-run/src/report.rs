@@ -50,6 +50,8 @@ pub(crate) struct Report {
     pub summary: Option<Numbers>,
     /// Time per pass, if it was measured.
     pub passes: BTreeMap<&'static str, PassNumbers>,
+    /// Time per pass of the pictures, if it was measured.
+    pub picture_passes: BTreeMap<&'static str, PassNumbers>,
     /// Files written.
     pub files: usize,
     /// Their size in bytes.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use splashdown::scene::{ColourBy, PictureKind, PictureQuality};
+use splashdown::scene::{ColourBy, Output, PictureKind, PictureQuality};
 
 use super::{choice, limit, whole};
 
@@ -60,7 +60,8 @@ pub struct RenderArguments {
     /// droplet files [default: the scene's]
     #[arg(long, value_name = "N", value_parser = limit())]
     pub min_neighbours: Option<u32>,
-    /// Width and height in pixels [default: the scene's]
+    /// Width and height in pixels, even; at most 32768 each, 268 million in all, and 8192 each with a film
+    /// [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = picture_size)]
     pub size: Option<[u32; 2]>,
     /// Degrees added to the camera's azimuth
@@ -81,6 +82,9 @@ pub struct RenderArguments {
     /// Slow motion: number of pictures per frame; below 1 the film plays faster
     #[arg(long, value_name = "F", default_value_t = 1.0, value_parser = factor)]
     pub slow: f32,
+    /// Measure the time of every pass and print it at the end; drawing is slower
+    #[arg(long)]
+    pub timing: bool,
     /// How often the film shows the pictures
     #[arg(long = "loop", value_name = "N", default_value_t = 1, value_parser = whole(1..=1000))]
     pub repeat: u32,
@@ -113,11 +117,20 @@ fn frames(text: &str) -> Result<FrameRange, String> {
 }
 
 fn picture_size(text: &str) -> Result<[u32; 2], String> {
-    let side = |side: &str| side.parse().ok().filter(|side| (16..=8192).contains(side) && side % 2 == 0);
-    match text.split_once('x').map(|(width, height)| (side(width), side(height))) {
-        Some((Some(width), Some(height))) => Ok([width, height]),
-        _ => Err("a size is two even integers from 16 to 8192 with an x between them, such as 1920x1080"
-            .to_owned()),
+    let side =
+        |side: &str| side.parse().ok().filter(|side| (16..=Output::MAX_SIDE).contains(side) && side % 2 == 0);
+    let size = match text.split_once('x').map(|(width, height)| (side(width), side(height))) {
+        Some((Some(width), Some(height))) => [width, height],
+        _ => {
+            return Err(
+                "a size is two even integers from 16 to 32768 with an x between them, such as 1920x1080"
+                    .to_owned(),
+            );
+        }
+    };
+    match Output::can_have_size(size) {
+        true => Ok(size),
+        false => Err("a picture has at most 268 million pixels, such as 16384x16384".to_owned()),
     }
 }
 
@@ -134,6 +147,16 @@ fn factor(text: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sizes_are_even_and_limited() {
+        assert_eq!(picture_size("12000x8000"), Ok([12_000, 8000]));
+        assert_eq!(picture_size("32768x8192"), Ok([32_768, 8192]));
+        for wrong in ["", "640", "641x480", "14x16", "32770x16"] {
+            assert!(picture_size(wrong).unwrap_err().contains("from 16 to 32768"), "{wrong}");
+        }
+        assert!(picture_size("32768x8194").unwrap_err().contains("268 million"));
+    }
 
     #[test]
     fn frames_are_a_number_or_an_increasing_range() {

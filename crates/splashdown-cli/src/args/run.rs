@@ -105,7 +105,7 @@ pub struct RunArguments {
     /// the resumed run]
     #[arg(long, value_name = "stop|warn|ignore", value_parser = choice::<OnBurst>())]
     pub on_burst: Option<OnBurst>,
-    /// Measure the time of every pass and print it at the end
+    /// Measure the time of every pass of the simulation and of the pictures, and print it at the end
     #[arg(long)]
     pub timing: bool,
     /// Print one JSON object per line to stdout

@@ -39,6 +39,9 @@ fn execute(arguments: &RunArguments) -> Result<Exit, Failure> {
     request.out.clone_from(&arguments.out);
     request.timing = arguments.timing;
     memory::check(request.scene(), &request.device())?;
+    if !request.scene().output.pictures.is_empty() {
+        memory::check_picture(request.scene().output.picture_size)?;
+    }
     let mut reporter = ConsoleReporter::new(arguments.json, arguments.verbosity.level());
     let session = Session::start(request, &mut reporter)?;
     // During the start Ctrl-C ends the program at once, because no frame can be lost yet.

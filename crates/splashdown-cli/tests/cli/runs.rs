@@ -294,9 +294,26 @@ fn pictures_and_films_are_made() -> Outcome {
     }
     let place = Place::new()?;
     let output = place
-        .splashdown(&["run", "small.toml", "--out", "out", "--device", "cpu", "--formats", "none"])
+        .splashdown(&[
+            "run",
+            "small.toml",
+            "--out",
+            "out",
+            "--device",
+            "cpu",
+            "--formats",
+            "none",
+            "--timing",
+        ])
         .output()?;
     assert!(output.status.success(), "{}", stderr(&output));
+    // Without timestamps the passes of the pictures are not measured, which is a warning.
+    if !stderr(&output).contains("no timestamps") {
+        assert!(stdout(&output).contains("| pass of pictures |"), "{}", stdout(&output));
+        let report: serde_json::Value = serde_json::from_slice(&std::fs::read(place.path("out/run.json"))?)?;
+        assert!(report["picture_passes"]["scene"]["count"].as_u64() > Some(0), "{report}");
+        assert!(report["passes"]["scene"].is_null(), "negative control: a pass of the pictures only");
+    }
     for kind in ["surface", "particles"] {
         let pictures: Vec<_> = (0..=2)
             .map(|i| fs::read(place.path(&format!("out/pictures/{kind}_000{i}.png"))))

@@ -25,7 +25,7 @@ fn vertex_main(@builtin(vertex_index) index: u32, @builtin(instance_index) edge:
     let hidden = start_distance < globals.near && end_distance < globals.near;
     let a = globals.clip_from_world * vec4f(mix(line.start, line.end, s), 1.0);
     let b = globals.clip_from_world * vec4f(mix(line.start, line.end, e), 1.0);
-    let half_size = 0.5 * globals.picture_size;
+    let half_size = 0.5 * globals.target_size;
     let direction = b.xy / b.w * half_size - a.xy / a.w * half_size;
     let tangent = direction / max(length(direction), 1e-6);
     let normal = vec2f(-tangent.y, tangent.x);

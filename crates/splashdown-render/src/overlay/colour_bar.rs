@@ -6,6 +6,8 @@ use crate::{Colouring, Quantity};
 
 const INK: [u8; 3] = [22, 32, 44];
 const PAPER: [u8; 3] = [255, 255, 255];
+/// The largest side of a texture that WebGPU guarantees.
+const LARGEST: u32 = 8192;
 
 /// Sizes in pixels, derived from the height of the picture.
 struct Layout {
@@ -89,13 +91,13 @@ pub(crate) fn draw_colour_bar(
 }
 
 /// Draws a line of text. Returns its corner in the picture and the image, or `None` if the picture
-/// is too small for it.
+/// is too small for it or the text longer than a texture.
 pub(crate) fn draw_caption(text: &str, picture_size: [u32; 2]) -> Option<([u32; 2], Canvas)> {
     let layout = Layout::new(picture_size);
     let margin = (1.5 * layout.pad) as u32;
     let width = (text_width(layout.text, text) + 2.0 * layout.pad).ceil() as u32;
     let height = (1.9 * layout.text).ceil() as u32;
-    if width + 2 * margin > picture_size[0] || height + 2 * margin > picture_size[1] {
+    if width > LARGEST || width + 2 * margin > picture_size[0] || height + 2 * margin > picture_size[1] {
         return None;
     }
     let mut canvas = Canvas::new([width, height]);

@@ -21,6 +21,7 @@ use crate::pipeline::{Bind, OVER, PipelineDesc, bind_group, bind_group_layout};
 use crate::recorder::Recorder;
 use crate::shader::Shader;
 use crate::texture::upload_texture;
+use crate::tiling::Tile;
 use crate::{Frame, RenderError};
 use bytemuck::{Pod, Zeroable};
 use canvas::Canvas;
@@ -47,7 +48,19 @@ struct Label {
     /// Text and size of the picture; when this changes the label is redrawn.
     content: String,
     /// Absent if the picture is too small for the label.
+    image: Option<Image>,
+    /// The tile of `group`.
+    tile: Tile,
     group: Option<BindGroup>,
+}
+
+/// What is drawn of a label.
+#[derive(Debug)]
+struct Image {
+    /// Pixels from the upper left of the picture.
+    corner: [u32; 2],
+    size: [u32; 2],
+    texture: TextureView,
 }
 
 /// Mirrors `Placement` in overlay.wgsl.
@@ -56,7 +69,7 @@ struct Label {
 struct Placement {
     corner: [f32; 2],
     size: [f32; 2],
-    picture_size: [f32; 2],
+    target_size: [f32; 2],
     encode_srgb: u32,
     pad: u32,
 }
@@ -79,9 +92,10 @@ impl Overlay {
         &mut self,
         device: &Device,
         queue: &Queue,
-        size: [u32; 2],
+        tile: Tile,
         frame: &Frame<'_>,
     ) -> Result<(), RenderError> {
+        let size = tile.tiling.picture();
         let colourings =
             [frame.particles.map(|drawn| drawn.colouring), frame.slice.map(|drawn| drawn.colouring)];
         let colouring = colourings.into_iter().flatten().find(|colouring| colouring.colour_bar);
@@ -94,12 +108,12 @@ impl Overlay {
         let old = self.colour_bar.take();
         self.colour_bar = bar.zip(colouring).map(|((content, range), colouring)| {
             let draw = || colour_bar::draw_colour_bar(&colouring, range, size);
-            self.reuse_or_draw(device, queue, size, old, content, draw)
+            self.reuse_or_draw(device, queue, tile, old, content, draw)
         });
         let old = self.caption.take();
         self.caption = caption.map(|text| {
             let content = format!("{size:?} {text}");
-            self.reuse_or_draw(device, queue, size, old, content, || colour_bar::draw_caption(text, size))
+            self.reuse_or_draw(device, queue, tile, old, content, || colour_bar::draw_caption(text, size))
         });
         Ok(())
     }
@@ -108,34 +122,42 @@ impl Overlay {
         &self,
         device: &Device,
         queue: &Queue,
-        picture_size: [u32; 2],
+        tile: Tile,
         old: Option<Label>,
         content: String,
         draw: impl FnOnce() -> Option<([u32; 2], Canvas)>,
     ) -> Label {
-        if let Some(old) = old.filter(|old| old.content == content) {
-            return old;
-        }
-        let group = draw().map(|(corner, canvas)| {
-            let placement = Placement {
-                corner: corner.map(|x| x as f32),
-                size: canvas.size().map(|x| x as f32),
-                picture_size: picture_size.map(|x| x as f32),
-                encode_srgb: u32::from(self.encode_srgb),
-                pad: 0,
-            };
-            let uniform = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("overlay placement"),
-                size: size_of::<Placement>() as u64,
-                usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&placement));
-            let texture = upload_texture(device, queue, "overlay", canvas.size(), canvas.bytes());
-            let resources = [uniform.as_entire_binding(), BindingResource::TextureView(&texture)];
-            bind_group(device, "overlay", &self.layout, &resources)
+        let image = match old {
+            Some(old) if old.content == content && old.tile == tile => return old,
+            Some(old) if old.content == content => old.image,
+            _ => draw().map(|(corner, canvas)| {
+                let texture = upload_texture(device, queue, "overlay", canvas.size(), canvas.bytes());
+                Image { corner, size: canvas.size(), texture }
+            }),
+        };
+        let group = image.as_ref().map(|image| self.place(device, queue, tile, image));
+        Label { content, image, tile, group }
+    }
+
+    /// Binds an image at its place in the target.
+    fn place(&self, device: &Device, queue: &Queue, tile: Tile, image: &Image) -> BindGroup {
+        let corner = tile.corner();
+        let placement = Placement {
+            corner: [0, 1].map(|axis: usize| image.corner[axis] as f32 - corner[axis]),
+            size: image.size.map(|x| x as f32),
+            target_size: tile.tiling.texture().map(|x| x as f32),
+            encode_srgb: u32::from(self.encode_srgb),
+            pad: 0,
+        };
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("overlay placement"),
+            size: size_of::<Placement>() as u64,
+            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
         });
-        Label { content, group }
+        queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&placement));
+        let resources = [uniform.as_entire_binding(), BindingResource::TextureView(&image.texture)];
+        bind_group(device, "overlay", &self.layout, &resources)
     }
 
     /// Draws the labels over the finished picture.

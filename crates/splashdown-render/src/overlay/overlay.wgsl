@@ -1,9 +1,9 @@
 // A prepared image (colour bar, caption) drawn over the finished picture, one texel per pixel.
 
 struct Placement {
-    corner: vec2f,          // pixels from the picture's upper left
+    corner: vec2f,          // pixels from the upper left of the target
     size: vec2f,
-    picture_size: vec2f,
+    target_size: vec2f,
     encode_srgb: u32,
     pad: u32,
 }
@@ -14,7 +14,7 @@ struct Placement {
 @vertex
 fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     let pixel = placement.corner + placement.size * vec2f(f32(index & 1u), f32(index >> 1u));
-    let ndc = pixel / placement.picture_size * 2.0 - 1.0;
+    let ndc = pixel / placement.target_size * 2.0 - 1.0;
     return vec4f(ndc.x, -ndc.y, 0.0, 1.0);
 }
 

@@ -11,8 +11,9 @@
 
 use crate::pipeline::{Bind, PipelineDesc, bind_group, bind_group_layout};
 use crate::shader::{FULLSCREEN, Shader};
-use crate::targets::Targets;
-use wgpu::{BindGroupLayout, BindingResource, Device, RenderPass, RenderPipeline, TextureFormat};
+use wgpu::{
+    BindGroupLayout, BindingResource, Device, RenderPass, RenderPipeline, TextureFormat, TextureView,
+};
 
 pub(crate) const SHADER: Shader =
     Shader { label: "scene copy", parts: &[FULLSCREEN, include_str!("scene_copy.wgsl")] };
@@ -30,9 +31,9 @@ impl SceneCopy {
         SceneCopy { pipeline: PipelineDesc::new(SHADER, &layouts, format).build(device), layout }
     }
 
-    /// Copies the scene of `targets`.
-    pub fn record(&self, device: &Device, pass: &mut RenderPass<'_>, targets: &Targets) {
-        let scene = [BindingResource::TextureView(&targets.scene)];
+    /// Copies a scene.
+    pub fn record(&self, device: &Device, pass: &mut RenderPass<'_>, scene: &TextureView) {
+        let scene = [BindingResource::TextureView(scene)];
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &bind_group(device, "scene", &self.layout, &scene), &[]);
         pass.draw(0..3, 0..1);

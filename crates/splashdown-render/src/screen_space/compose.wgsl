@@ -11,8 +11,9 @@ const FRACTION_DEVIATION = 0.6;
 
 fn sample_distance(texel: vec2i) -> f32 {
     let shifted = texel + vec2i(i32(globals.splat_margin));
-    let size = vec2i(textureDimensions(distances));
-    if any(shifted < vec2i(0)) || any(shifted >= size) {
+    let corner = vec2i(globals.tile_corner);
+    let end = min(vec2i(globals.picture_size + 2.0 * globals.splat_margin) - corner, vec2i(textureDimensions(distances)));
+    if any(shifted < max(-corner, vec2i(0))) || any(shifted >= end) {
         return NO_LIQUID;
     }
     return textureLoad(distances, shifted, 0).r;

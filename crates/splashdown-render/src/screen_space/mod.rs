@@ -99,7 +99,7 @@ pub struct DrawnLiquidParticles<'a> {
 }
 
 /// Margin of the distance texture in pixels: the largest number of taps of the filter on each side.
-const MARGIN: u32 = 24;
+pub(crate) const MARGIN: u32 = 24;
 
 #[derive(Debug)]
 pub(crate) struct ScreenSpace {
@@ -134,7 +134,7 @@ impl ScreenSpace {
         let particles_layout = bind_group_layout(device, "liquid particles", &[Bind::Storage]);
         let solid_layout = bind_group_layout(device, "solid", &[Bind::Texture]);
         let distances_layout = bind_group_layout(device, "distances", &[Bind::Texels, Bind::Texels]);
-        let compose_bindings = [Bind::Texture, Bind::Texture, Bind::Sampler, Bind::Texels];
+        let compose_bindings = [Bind::TextureLayers, Bind::Texture, Bind::Sampler, Bind::Texels];
         let compose_layout = bind_group_layout(device, "compose", &compose_bindings);
         let splat_layouts = [globals, &particles_layout];
         let splat = PipelineDesc {
@@ -235,7 +235,7 @@ impl ScreenSpace {
             pass.draw(0..3, 0..1);
         }
         let resources = [
-            BindingResource::TextureView(&targets.scene),
+            BindingResource::TextureView(&targets.scenes.view),
             BindingResource::TextureView(&targets.thickness),
             BindingResource::Sampler(&self.sampler),
             BindingResource::TextureView(&maps.distances[1]),
@@ -274,6 +274,16 @@ impl<'a> DrawnLiquidParticles<'a> {
     /// A liquid of particles of a radius in metres, half the particle spacing.
     pub fn new(buffers: ParticleBuffers<'a>, radius: f32, liquid: Liquid) -> DrawnLiquidParticles<'a> {
         DrawnLiquidParticles { buffers, radius, liquid }
+    }
+
+    /// Pixels around a tile that the filters read beyond the margin, for liquid at this distance in metres or farther:
+    /// both rounds of smoothing follow one another, and the cleanup and the normals read neighbours.
+    pub(crate) fn border(&self, distance: f32, pixel_angle: f32) -> u32 {
+        let splat = SPLAT_REACH * self.radius;
+        // Nearer liquid than a tenth of a splat fills the picture.
+        let pixels = splat / ((distance - splat).max(0.1 * splat) * pixel_angle);
+        let reach = (REACH[0] + REACH[1]) as f32 * pixels;
+        (reach.ceil() as u32 + 4).saturating_sub(MARGIN).max(4)
     }
 
     /// Checks the values and writes the uniforms.

@@ -28,16 +28,24 @@ fn filter_begin(centre: f32) -> Filter {
     return Filter(centre, centre - range, centre + range, centre, 1.0);
 }
 
-fn load(texel: vec2i) -> vec2f {
-    let last = vec2i(textureDimensions(distances)) - 1;
-    return textureLoad(distances, clamp(texel, vec2i(0), last), 0).rg;
+// The first and the last texel that belong to the picture with its margin. A tile extends beyond them.
+fn first_texel() -> vec2i {
+    return max(-vec2i(globals.tile_corner), vec2i(0));
 }
 
-// A sample for the filter. A sample outside the texture counts as liquid in front: the filter then
+fn last_texel() -> vec2i {
+    let of_picture = vec2i(globals.picture_size + 2.0 * globals.splat_margin - globals.tile_corner);
+    return min(of_picture, vec2i(textureDimensions(distances))) - 1;
+}
+
+fn load(texel: vec2i) -> vec2f {
+    return textureLoad(distances, clamp(texel, first_texel(), last_texel()), 0).rg;
+}
+
+// A sample for the filter. A sample outside the picture counts as liquid in front: the filter then
 // also skips its mirror image, and the surface continues without a bend.
 fn sample_distance(texel: vec2i) -> f32 {
-    let size = vec2i(textureDimensions(distances));
-    if any(texel < vec2i(0)) || any(texel >= size) {
+    if any(texel < first_texel()) || any(texel > last_texel()) {
         return 0.0;
     }
     return textureLoad(distances, texel, 0).r;

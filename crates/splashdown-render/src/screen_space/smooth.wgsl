@@ -56,9 +56,10 @@ fn neighbour(here: vec2i) -> f32 {
 // True if the thickness is positive. The discs of the thickness are larger than the spheres, so
 // where this is false no sphere is near.
 fn liquid_is_near(here: vec2i) -> bool {
-    let seen = here - vec2i(i32(globals.splat_margin));
-    let last = vec2i(globals.picture_size) - 1;
-    return textureLoad(thickness, clamp(seen, vec2i(0), last) / 2, 0).r > 0.0;
+    let corner = vec2i(globals.tile_corner);
+    let in_picture = here - vec2i(i32(globals.splat_margin)) + corner;
+    let seen = clamp(in_picture, vec2i(0), vec2i(globals.picture_size) - 1) - corner;
+    return textureLoad(thickness, clamp(seen, vec2i(0), vec2i(globals.target_size) - 1) / 2, 0).r > 0.0;
 }
 
 @fragment

@@ -15,7 +15,7 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> Varying {
     let corner = sphere_corner(positions[index / 3u], globals.splat_radius, index);
     // The texture extends beyond the picture by a margin, so that smoothing has data outside the
     // border.
-    let shrink = globals.picture_size / (globals.picture_size + 2.0 * globals.splat_margin);
+    let shrink = globals.target_size / (globals.target_size + 2.0 * globals.splat_margin);
     let position = vec4f(corner.position.xy * shrink, corner.position.zw);
     return Varying(position, corner.across, corner.ray, corner.centre.w);
 }

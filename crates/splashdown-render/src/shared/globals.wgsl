@@ -26,7 +26,7 @@ struct Globals {
     fade_distance: f32,
     shadow_min: vec2f,      // corner of the shadow map on the floor, (x, z)
     shadow_size: vec2f,
-    picture_size: vec2f,
+    picture_size: vec2f,    // of the whole picture
     line_width: f32,        // pixels
     particle_radius: f32,
     shadow_absorption: vec3f, // per metre of fluid along the sun's ray
@@ -81,17 +81,28 @@ struct Globals {
     bounced: vec3f,         // light from the floor on surfaces that face it
     sunlit_panes: u32,      // panes that take sunlight: bits 0 and 1 for x, 2 and 3 for z
     body_heights: vec2f,    // of the lowest and the highest point of all bodies
-    reserved: vec2u,
+    tile_corner: vec2f,     // of the target in the picture, pixels; even numbers, outside at the left and at the top
+    target_size: vec2f,     // of the texture that is drawn into: the picture, or a tile with its border
+    tile_stride: vec2f,     // pixels from a tile to the next
+    tile_grid: vec2f,       // number of columns and rows of tiles
+    tile_border: f32,       // pixels around a tile that do not belong to it
+    reserved: u32,
     edges: array<Edge, 12>,
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;
 
-// Direction of the ray through a pixel, not normalised: its component along `forward` is 1.
+// Direction of the ray through a pixel of the target, not normalised: its component along `forward` is 1.
 fn view_ray(pixel: vec2f) -> vec3f {
-    let x = 2.0 * pixel.x / globals.picture_size.x - 1.0;
-    let y = 1.0 - 2.0 * pixel.y / globals.picture_size.y;
+    let in_picture = pixel + globals.tile_corner;
+    let x = 2.0 * in_picture.x / globals.picture_size.x - 1.0;
+    let y = 1.0 - 2.0 * in_picture.y / globals.picture_size.y;
     return globals.forward + globals.ray_shift + x * globals.right + y * globals.up;
+}
+
+// The pixel of the picture at a place of the target: the seed of pseudo-random numbers.
+fn pixel_of_picture(place: vec2f) -> vec2u {
+    return vec2u(vec2i(place + globals.tile_corner));
 }
 
 fn has_floor() -> bool {

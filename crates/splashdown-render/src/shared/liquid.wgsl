@@ -1,13 +1,16 @@
 // Shading of the liquid's surface without tracing rays: Fresnel blend of reflection and refraction,
 // used for the mesh and the screen-space fluid. Needs globals.wgsl, environment.wgsl, optics.wgsl.
 
-@group(2) @binding(0) var scene_colour: texture_2d<f32>;   // the picture without the liquid
+@group(2) @binding(0) var scene_colour: texture_2d_array<f32>; // the picture without the liquid, a layer per tile
 @group(2) @binding(1) var thickness: texture_2d<f32>;      // length of the view ray inside the liquid, m
 @group(2) @binding(2) var scene_sampler: sampler;
 
-// Length in metres of the view ray inside the liquid.
+// Length in metres of the view ray inside the liquid, at half the resolution. Nothing is read from beyond the
+// picture, which only a tile shows.
 fn liquid_path(pixel: vec2f) -> f32 {
-    return max(textureSampleLevel(thickness, scene_sampler, pixel / globals.picture_size, 0.0).r, 0.0);
+    let in_picture = clamp(pixel + globals.tile_corner, vec2f(1.0), globals.picture_size - 1.0);
+    let uv = (in_picture - globals.tile_corner) / globals.target_size;
+    return max(textureSampleLevel(thickness, scene_sampler, uv, 0.0).r, 0.0);
 }
 
 // Distance along a ray inside the tank to the nearest glass wall (x) and the axis of its normal (y).
@@ -73,8 +76,14 @@ fn leaving_ray(world: vec3f, bent: vec3f, path: f32) -> Leaving {
 // The picture behind the liquid at a point of the scene.
 fn scene_at(world: vec3f) -> vec3f {
     let clip = globals.clip_from_world * vec4f(world, 1.0);
-    let uv = clamp(clip.xy / max(clip.w, globals.near) * vec2f(0.5, -0.5) + 0.5, vec2f(0.001), vec2f(0.999));
-    return light_of(textureSampleLevel(scene_colour, scene_sampler, uv, 0.0).rgb);
+    let in_target = clip.xy / max(clip.w, globals.near) * vec2f(0.5, -0.5) + 0.5;
+    let in_picture = (in_target * globals.target_size + globals.tile_corner) / globals.picture_size;
+    let pixel = clamp(in_picture, vec2f(0.001), vec2f(0.999)) * globals.picture_size;
+    // Its tile, which may be another one.
+    let tile = clamp(floor(pixel / globals.tile_stride), vec2f(0.0), globals.tile_grid - 1.0);
+    let uv = (pixel - tile * globals.tile_stride + globals.tile_border) / globals.target_size;
+    let layer = i32(tile.y * globals.tile_grid.x + tile.x);
+    return light_of(textureSampleLevel(scene_colour, scene_sampler, uv, layer, 0.0).rgb);
 }
 
 // Colour of the liquid at the surface point `world`, with `path` metres of liquid behind it. The

@@ -92,7 +92,7 @@ impl Deferred {
         samples: u32,
     ) -> Deferred {
         let multisampled = samples > 1;
-        let behind_bindings = [Bind::Texture, Bind::Texture, Bind::Sampler];
+        let behind_bindings = [Bind::TextureLayers, Bind::Texture, Bind::Sampler];
         let behind_layout = bind_group_layout(device, "behind the liquid", &behind_bindings);
         let stored_bindings = [Bind::Integers { multisampled }, Bind::Depths { multisampled }];
         let stored_layout = bind_group_layout(device, "stored surface", &stored_bindings);
@@ -143,7 +143,7 @@ impl Deferred {
             buffers.draw(&mut pass);
         }
         let behind = [
-            BindingResource::TextureView(&targets.scene),
+            BindingResource::TextureView(&targets.scenes.view),
             BindingResource::TextureView(&targets.thickness),
             BindingResource::Sampler(&self.sampler),
         ];

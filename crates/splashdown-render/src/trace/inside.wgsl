@@ -25,9 +25,9 @@ fn fragment_main(@builtin(position) position: vec4f) -> Output {
     let body = nearest_of(globals.body_root, globals.eye, direction, surface);
     var light: vec3f;
     if is_inside {
-        light = followed_light(globals.eye, direction, vec3f(0.0, 1.0, 0.0), 2.0 * globals.pixel_angle, vec2u(position.xy));
+        light = followed_light(globals.eye, direction, vec3f(0.0, 1.0, 0.0), 2.0 * globals.pixel_angle, pixel_of_picture(position.xy));
     } else {
-        light = traced_liquid(globals.eye + direction * surface.distance, found.normal, vec2u(position.xy));
+        light = traced_liquid(globals.eye + direction * surface.distance, found.normal, pixel_of_picture(position.xy));
     }
     return Output(vec4f(present(light), 1.0), min(depth_of(max(body.distance * along, globals.near)), 1.0));
 }

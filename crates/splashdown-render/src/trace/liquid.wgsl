@@ -18,5 +18,5 @@ fn vertex_main(@location(0) vertex: vec4f, @location(1) normal: vec4f) -> Varyin
 
 @fragment
 fn fragment_main(in: Varying) -> @location(0) vec4f {
-    return vec4f(present(traced_liquid(in.world, in.normal, vec2u(in.position.xy))), 1.0);
+    return vec4f(present(traced_liquid(in.world, in.normal, pixel_of_picture(in.position.xy))), 1.0);
 }

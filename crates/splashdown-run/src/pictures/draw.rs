@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use splashdown::scene::{Camera, PictureKind, Scene};
+use splashdown::scene::{Camera, Output, PictureKind, Scene};
 use splashdown::{BodyMesh, BodyState};
 use splashdown_gpu::Gpu;
 use splashdown_io::{Particles, Picture};
@@ -13,7 +13,10 @@ use splashdown_render::{
 };
 
 use super::{FrameData, motion};
-use crate::{RunError, appearance};
+use crate::{PictureTimings, RunError, appearance};
+
+// Both crates check sizes: the scene before a device is opened.
+const _: () = assert!(Output::MAX_SIDE == Offscreen::MAX_SIDE && Output::MAX_PIXELS == Offscreen::MAX_PIXELS);
 
 /// Draws frames on a device.
 pub struct FrameRenderer {
@@ -27,6 +30,8 @@ pub struct FrameRenderer {
     colouring: Colouring,
     liquid: Liquid,
     bodies: Vec<PlacedBody>,
+    /// Pictures since the times of the passes were taken.
+    measured: u64,
 }
 
 impl FrameRenderer {
@@ -50,7 +55,17 @@ impl FrameRenderer {
         };
         let bodies = bodies.iter().map(place).collect::<Result<_, _>>()?;
         let (scene, camera) = (scene.clone(), scene.camera);
-        Ok(Self { gpu, scene, camera, kinds, renderer, target, colouring, liquid, bodies })
+        Ok(Self { gpu, scene, camera, kinds, renderer, target, colouring, liquid, bodies, measured: 0 })
+    }
+
+    /// Measures the passes of the pictures from now on. Returns false if the device has no timestamps.
+    pub fn enable_timing(&mut self) -> bool {
+        self.renderer.set_timing(true)
+    }
+
+    /// The times of the passes since the last call.
+    pub fn take_timings(&mut self) -> PictureTimings {
+        PictureTimings { pictures: std::mem::take(&mut self.measured), passes: self.renderer.take_timings() }
     }
 
     /// Opens the shutter for a time that is shorter by this factor from now on.
@@ -74,6 +89,7 @@ impl FrameRenderer {
     pub fn draw_from(&mut self, data: &FrameData, camera: Camera) -> Result<Vec<Arc<Picture>>, RunError> {
         self.camera = camera;
         let pictures = self.pictures(data)?;
+        self.measured += pictures.len() as u64;
         self.gpu.health("a picture")?;
         Ok(pictures)
     }
@@ -141,11 +157,18 @@ impl FrameRenderer {
                 .as_ref()
                 .map(|droplets| appearance::droplets(&self.scene, droplets.buffers(), self.liquid));
             frame.traced = moment.traced.as_ref().zip(quality);
-            if end == samples {
-                return self.target.submit_from(&mut self.renderer, &frame, first);
+            if parts == 1 {
+                return self.target.submit(&mut self.renderer, &frame);
             }
-            self.target.submit_samples(&mut self.renderer, &frame, first..end)?;
             part += 1;
+            if end < samples {
+                self.target.submit_samples(&mut self.renderer, &frame, first..end)?;
+            } else if let Some(ticket) = self.target.submit_from(&mut self.renderer, &frame, first)? {
+                return Ok(ticket);
+            } else {
+                // A large picture is drawn tile by tile, each from all moments.
+                part = 0;
+            }
         }
     }
 

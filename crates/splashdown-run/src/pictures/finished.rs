@@ -13,7 +13,7 @@ use super::known_bodies::KnownBodies;
 use super::motion::{advanced, is_blurred, with_velocities_of};
 use super::orbit::Orbit;
 use super::{FrameData, drawing_device};
-use crate::{PlayedFrame, RunError, RunFrames};
+use crate::{PictureTimings, PlayedFrame, RunError, RunFrames};
 
 /// Draws surfaces or particles from the files of a finished or interrupted run.
 ///
@@ -100,6 +100,16 @@ impl FinishedRun {
     pub fn slow_down(&mut self, factor: f32) {
         self.is_slowed = true;
         self.renderer.shorten_exposure(factor);
+    }
+
+    /// Measures the passes of the pictures from now on. Returns false if the device has no timestamps.
+    pub fn enable_timing(&mut self) -> bool {
+        self.renderer.enable_timing()
+    }
+
+    /// The times of the passes since the last call.
+    pub fn take_timings(&mut self) -> PictureTimings {
+        self.renderer.take_timings()
     }
 
     /// The scene of the run.

@@ -14,14 +14,15 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 
+use splashdown::BodyState;
 use splashdown::foam::DiffuseParticles;
-use splashdown::scene::{PictureKind, Scene};
-use splashdown::{BodyMesh, BodyState};
+use splashdown::scene::PictureKind;
 use splashdown_gpu::{DeviceRequest, Gpu};
 use splashdown_io::{Film, FrameWriter, IoError, Job, Mesh, Particles};
+use splashdown_render::{MemoryForecast, Offscreen};
 
-use crate::{RunError, RunFolder};
-use draw::FrameRenderer;
+use crate::{PictureTimings, RunError, RunFolder};
+pub(crate) use draw::FrameRenderer;
 
 pub use beside::Beside;
 pub use finished::{FinishedFrame, FinishedRun};
@@ -32,20 +33,30 @@ pub use painter::Painter;
 /// Number of frames that can wait while one is drawn.
 const QUEUE: usize = 1;
 
+/// What the thread has drawn in the end.
+#[derive(Debug, Default)]
+pub(crate) struct Drawn {
+    /// The films, whose last pictures the writer may still have to add.
+    pub films: Vec<Arc<Film>>,
+    pub timings: PictureTimings,
+    /// Why pictures are missing.
+    pub failure: Option<RunError>,
+}
+
 /// Draws the frames of a run.
 #[derive(Debug)]
 pub(crate) struct Pictures {
     kinds: Vec<PictureKind>,
     folder: RunFolder,
     queue: SyncSender<FrameData>,
-    thread: JoinHandle<()>,
+    thread: JoinHandle<PictureTimings>,
     failure: Arc<OnceLock<RunError>>,
     films: Vec<Arc<Film>>,
 }
 
 /// The data from which the pictures of a frame are drawn.
 #[derive(Debug)]
-struct FrameData {
+pub(crate) struct FrameData {
     index: u32,
     time: f64,
     particles: Arc<Particles>,
@@ -66,6 +77,11 @@ pub(crate) fn drawing_device(simulation: Option<&Arc<Gpu>>) -> Result<Arc<Gpu>, 
     }
 }
 
+/// The memory for drawing pictures of this size in pixels.
+pub fn picture_memory(size: [u32; 2]) -> MemoryForecast {
+    Offscreen::memory_forecast(size)
+}
+
 /// Where the thread sends its pictures.
 struct Destination {
     kinds: Vec<PictureKind>,
@@ -75,30 +91,28 @@ struct Destination {
 }
 
 impl Pictures {
-    /// Starts the thread. `films` has one film per kind, or none.
+    /// Starts the thread with the pictures of `renderer`. `films` has one film per kind, or none.
     ///
     /// # Errors
-    /// [`RunError::Render`] if the device cannot draw pictures of the scene's size.
+    /// [`RunError::Io`] if the system has no thread.
     pub fn start(
-        gpu: Arc<Gpu>,
-        scene: &Scene,
-        bodies: &[BodyMesh],
+        mut renderer: FrameRenderer,
         kinds: Vec<PictureKind>,
         films: Vec<Arc<Film>>,
         folder: &RunFolder,
         writer: Arc<FrameWriter>,
     ) -> Result<Self, RunError> {
-        let renderer = FrameRenderer::new(gpu, scene, bodies, kinds.clone())?;
         let destination =
             Destination { kinds: kinds.clone(), films: films.clone(), folder: folder.clone(), writer };
         let (queue, frames) = sync_channel(QUEUE);
         let failure = Arc::new(OnceLock::new());
         let report = Arc::clone(&failure);
         let body = move || {
-            if let Err(error) = draw_all(renderer, &destination, &frames) {
+            if let Err(error) = draw_all(&mut renderer, &destination, &frames) {
                 // Only this thread sets it, once.
                 let _ = report.set(error);
             }
+            renderer.take_timings()
         };
         let thread = thread::Builder::new()
             .name("splashdown-pictures".to_owned())
@@ -132,20 +146,20 @@ impl Pictures {
         self.failure.get()
     }
 
-    /// Waits for the last picture. Returns the films, whose last pictures the writer may still have to add, and the
-    /// failure, if any.
-    pub fn finish(self) -> (Vec<Arc<Film>>, Option<RunError>) {
+    /// Waits for the last picture.
+    pub fn finish(self) -> Drawn {
         drop(self.queue);
-        let panicked = self.thread.join().is_err();
+        let joined = self.thread.join();
         let failure = Arc::into_inner(self.failure).and_then(OnceLock::into_inner);
         let stopped = || IoError::WriterStopped { reason: "the drawing thread panicked".to_owned() }.into();
-        (self.films, failure.or_else(|| panicked.then(stopped)))
+        let failure = failure.or_else(|| joined.is_err().then(stopped));
+        Drawn { films: self.films, timings: joined.unwrap_or_default(), failure }
     }
 }
 
 /// Draws until the queue is closed.
 fn draw_all(
-    mut renderer: FrameRenderer,
+    renderer: &mut FrameRenderer,
     destination: &Destination,
     frames: &Receiver<FrameData>,
 ) -> Result<(), RunError> {

@@ -14,7 +14,7 @@ use crate::checkpoints::CheckpointWriter;
 use crate::frames::FrameFiles;
 use crate::lock::FolderLock;
 use crate::pictures::Pictures;
-use crate::report::Report;
+use crate::report::{Report, pass_numbers};
 use crate::tables::Tables;
 use crate::{CompleteFrame, Reporter, RunEnd, RunError, RunFolder, RunOutcome, RunRequest, Stop, films};
 
@@ -190,9 +190,10 @@ impl Session {
         } = self;
         drop(run);
         reporter.waiting("finishing pictures and files");
-        let (drawn, drawing) = pictures.map(Pictures::finish).unwrap_or_default();
-        films.extend(drawn);
-        if let Some(error) = drawing {
+        let drawn = pictures.map(Pictures::finish).unwrap_or_default();
+        films.extend(drawn.films);
+        report.picture_passes = pass_numbers(&drawn.timings.passes);
+        if let Some(error) = drawn.failure {
             if !pictures_failed {
                 reporter.warning(&format!("no more pictures: {error}"));
             }
@@ -259,6 +260,7 @@ impl Session {
             last_frame: last_complete,
             files: written,
             films,
+            picture_timings: drawn.timings,
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::checkpoints::CheckpointWriter;
 use crate::folder::{Subfolders, remove_partial};
 use crate::frames::FrameFiles;
 use crate::lock::FolderLock;
-use crate::pictures::{self, Pictures};
+use crate::pictures::{self, FrameRenderer, Pictures};
 use crate::report::{Report, alarms_until, is_finished};
 use crate::sequence::is_same;
 use crate::tables::Tables;
@@ -110,7 +110,7 @@ impl Session {
             _lock: lock,
         };
         let draws = session.run.first_frame() < frames;
-        match session.start_pictures(&scene, kinds, settings.film, resumed_after, draws, reporter) {
+        match session.start_pictures(&scene, kinds, settings.film, resumed_after, (draws, timing), reporter) {
             Err(error) if pictures_required => return Err(error),
             Err(error) => reporter.warning(&format!("no pictures: {error}. The run continues without them")),
             Ok(()) => {}
@@ -170,7 +170,7 @@ impl Session {
         kinds: Vec<PictureKind>,
         film: bool,
         resumed_after: Option<u32>,
-        draws: bool,
+        (draws, timing): (bool, bool),
         reporter: &mut dyn Reporter,
     ) -> Result<(), RunError> {
         if kinds.is_empty() {
@@ -201,8 +201,14 @@ impl Session {
             self.films = films;
             return Ok(());
         };
-        let (bodies, writer) = (self.run.bodies(), self.files.writer());
-        self.pictures = Some(Pictures::start(gpu, scene, bodies, kinds, films, &self.folder, writer)?);
+        let mut renderer = FrameRenderer::new(gpu, scene, self.run.bodies(), kinds.clone())?;
+        if timing && !renderer.enable_timing() {
+            reporter.warning(
+                "the device that draws has no timestamps: the passes of the pictures are not measured",
+            );
+        }
+        let writer = self.files.writer();
+        self.pictures = Some(Pictures::start(renderer, kinds, films, &self.folder, writer)?);
         Ok(())
     }
 }

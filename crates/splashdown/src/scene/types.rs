@@ -500,7 +500,8 @@ pub struct Output {
     pub formats: Vec<Format>,
     /// Pictures drawn of each frame.
     pub pictures: Vec<PictureKind>,
-    /// Width and height of a picture in pixels.
+    /// Width and height of a picture in pixels: at most [`MAX_SIDE`](Self::MAX_SIDE) each, and
+    /// [`MAX_PIXELS`](Self::MAX_PIXELS) in all.
     pub picture_size: [u32; 2],
     /// How carefully pictures of the surface are drawn.
     pub quality: PictureQuality,
@@ -510,6 +511,21 @@ pub struct Output {
     pub film: bool,
     /// Values at the ends of the colour bar; `None`: derived from the scene.
     pub colour_range: Option<[f32; 2]>,
+}
+
+impl Output {
+    /// Largest side of a picture in pixels.
+    pub const MAX_SIDE: u32 = 32_768;
+    /// Largest number of pixels of a picture, which then takes 1 GiB of memory.
+    pub const MAX_PIXELS: u64 = 1 << 28;
+    /// Largest side of the pictures of a film in pixels.
+    pub const MAX_FILM_SIDE: u32 = 8192;
+
+    /// Whether a picture of this size, in pixels, can be drawn.
+    pub fn can_have_size([width, height]: [u32; 2]) -> bool {
+        [width, height].iter().all(|side| (16..=Self::MAX_SIDE).contains(side))
+            && u64::from(width) * u64::from(height) <= Self::MAX_PIXELS
+    }
 }
 
 impl Default for Output {

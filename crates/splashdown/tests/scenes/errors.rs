@@ -101,6 +101,8 @@ snapshot!(
         "{CUBE}[surface]\nenabled = false\n[output]\npictures = [\"surface\"]\nformats = [\"obj\"]\npicture_size = [101, 100]\ncolour_range = [2, 1]\n"
     )
 );
+snapshot!(film_of_large_pictures, format!("{CUBE}[output]\npicture_size = [12000, 8000]\n"));
+snapshot!(too_many_pixels, format!("{CUBE}[output]\nfilm = false\npicture_size = [32768, 8193]\n"));
 snapshot!(film_without_pictures, format!("{CUBE}[output]\npictures = []\nfilm = true\n"));
 snapshot!(
     foam_the_wrong_way_round,

@@ -1,5 +1,6 @@
 //! Drawing the pictures, one after the other.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use splashdown_run::{FinishedFrame, FinishedRun, Orbit, Recorder, RunError, Stop};
@@ -62,7 +63,7 @@ impl Drawing {
         let seconds = moment.offset / f64::from(self.finished.scene().frame_rate);
         match self.finished.draw_frame(frame, seconds, &self.orbit, progress) {
             Ok(picture) => {
-                self.recorder.add(picture.rgba.clone())?;
+                self.recorder.add(Arc::unwrap_or_clone(picture).rgba)?;
                 Ok(true)
             }
             // One frame may have more triangles than the device can hold.

@@ -13,7 +13,7 @@ use splashdown_run::{FinishedRun, Recorder, Stop, appearance, films};
 use crate::args::RenderArguments;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
-use crate::{console, human};
+use crate::{console, human, memory, summary};
 use drawing::{Drawing, End};
 use moments::moments;
 use problems::Problems;
@@ -21,12 +21,16 @@ use problems::Problems;
 /// Draws the frames. Frames and files that cannot be used are left out and reported at the end.
 pub fn run(arguments: &RenderArguments) -> Result<Exit, Failure> {
     let scene = options::scene(arguments)?;
+    memory::check_picture(scene.output.picture_size)?;
     let kind = options::kind(arguments, &scene)?;
     let mut finished = FinishedRun::open_for(&arguments.run, &scene, kind)?;
     if arguments.slow > 1.0 {
         finished.slow_down(arguments.slow);
     }
     let mut problems = Problems::default();
+    if arguments.timing && !finished.enable_timing() {
+        problems.extend(["the device has no timestamps: passes are not measured".to_owned()]);
+    }
     let frames = options::selected(arguments, &finished, &mut problems)?;
     problems.extend(finished.problems(|frame| frames.binary_search(&frame).is_ok()));
     problems.extend(appearance::caption_problem(&scene));
@@ -47,12 +51,16 @@ pub fn run(arguments: &RenderArguments) -> Result<Exit, Failure> {
     let begun = Instant::now();
     let end = drawing.draw_all(&moments, &interrupt);
     let seconds = begun.elapsed().as_secs_f64();
+    let timings = drawing.finished.take_timings();
     let Drawing { recorder, problems, .. } = drawing;
     let rate = films::frame_rate(scene.frame_rate) / arguments.slow.min(1.0);
     // A second signal leaves out the film.
     let repeats = if interrupt.stop() == Stop::Now { 0 } else { arguments.repeat };
     let (problems, pictures) = close(repeats, rate, recorder, problems)?;
     problems.report();
+    if !timings.passes.passes.is_empty() {
+        console::print(summary::picture_passes(&timings));
+    }
     match end {
         End::Failed(error) => Err(error.into()),
         End::Finished if pictures.count == 0 => Err(problems.failure()),
@@ -98,6 +106,10 @@ fn close(
 ) -> Result<(Problems, Pictures), Failure> {
     let (count, folder) = (recorder.frames(), recorder.folder().to_owned());
     let mut has_film = (count > 1 && repeats > 0) || (count == 1 && repeats > 1);
+    if let Some(problem) = films::size_problem(recorder.size()).filter(|_| has_film) {
+        problems.extend([problem]);
+        has_film = false;
+    }
     if has_film {
         let failure = recorder.finish_with_film(rate, repeats)?;
         has_film = failure.is_none();

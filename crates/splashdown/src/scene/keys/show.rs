@@ -75,8 +75,8 @@ pub(super) static OUTPUT: Table = Table {
             .also(&["picture", "images"]),
         key(
             "picture_size",
-            Kind::Integers(2, range(16.0, 8192.0, "pixels")),
-            "Width and height of the pictures; a film needs even numbers.",
+            Kind::Integers(2, range(16.0, 32_768.0, "pixels")),
+            "Width and height of the pictures, at most 268 million pixels in all; a film needs even numbers up to 8192.",
         )
         .default("[1280, 720]")
         .also(&["resolution", "size"]),

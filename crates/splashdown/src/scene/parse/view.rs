@@ -170,6 +170,16 @@ pub(super) fn read_output(section: &Section<'_>, surface: Option<&SurfaceSetting
         result =
             Err(section.complain("film", message, "false", "add \"particles\" or \"surface\" to pictures"));
     }
+    if !Output::can_have_size(output.picture_size) {
+        let [width, height] = output.picture_size;
+        let message = format!("a picture of {width} x {height} pixels is too large");
+        let allowed = "at most 268 million pixels, such as [16384, 16384]";
+        result = Err(section.complain("picture_size", message, allowed, "reduce a side"));
+    } else if output.film && output.picture_size.iter().any(|&side| side > Output::MAX_FILM_SIDE) {
+        let [width, height] = output.picture_size;
+        let message = format!("a film cannot have pictures of {width} x {height} pixels");
+        result = Err(section.complain("picture_size", message, "8192 pixels a side", "or set film = false"));
+    }
     if output.film && output.picture_size.iter().any(|side| side % 2 == 1) {
         let message = "a film needs an even picture_size".to_owned();
         result = Err(section.complain("picture_size", message, "even numbers", "or set film = false"));
