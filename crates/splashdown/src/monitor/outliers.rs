@@ -58,8 +58,9 @@ mod tests {
     #[test]
     fn the_speed_of_fluid_in_a_nozzle_counts_once() {
         let velocities = |speed: f32| {
-            let cloud = Particles::from_positions(vec![[0.0; 3]; 10]).with_ids((0..10).collect());
-            Particles { velocities: vec![[speed, 0.0, 0.0]; 10], ..cloud }
+            let mut cloud = Particles::from_positions(vec![[0.0; 3]; 10]).with_ids((0..10).collect());
+            cloud.velocities = vec![[speed, 0.0, 0.0]; 10];
+            cloud
         };
         let allowed = |speed: f32| Outliers::find(&velocities(speed), 0.5, 0.4).unwrap().1;
         assert!((allowed(0.4) - 0.5).abs() < 1e-6);
