@@ -54,7 +54,7 @@ fn a_burst_stops_the_run_and_can_be_resumed() -> Outcome {
 fn a_step_that_becomes_too_short_is_explained() -> Outcome {
     let place = Place::new()?;
     let fast = "sound_speed = 3\nmethod = \"wcsph\"\ndensity = \"continuity\"\nnegative_pressure = \"keep\"\nmin_dt = 3e-3";
-    place.write("fast.toml", &SOFT.replace("sound_speed = 0.05", fast))?;
+    place.write("fast.toml", SOFT.replace("sound_speed = 0.05", fast))?;
     let output = place
         .splashdown(&["run", "fast.toml", "--device", "cpu", "--no-pictures", "--out", "out"])
         .output()?;
