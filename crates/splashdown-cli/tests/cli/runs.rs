@@ -310,7 +310,7 @@ fn pictures_and_films_are_made() -> Outcome {
     // Without timestamps the passes of the pictures are not measured, which is a warning.
     if !stderr(&output).contains("no timestamps") {
         assert!(stdout(&output).contains("| pass of pictures |"), "{}", stdout(&output));
-        let report: serde_json::Value = serde_json::from_slice(&std::fs::read(place.path("out/run.json"))?)?;
+        let report: Value = serde_json::from_slice(&fs::read(place.path("out/run.json"))?)?;
         assert!(report["picture_passes"]["scene"]["count"].as_u64() > Some(0), "{report}");
         assert!(report["passes"]["scene"].is_null(), "negative control: a pass of the pictures only");
     }
