@@ -52,7 +52,11 @@ fn the_draft_of_floating_cubes_follows_archimedes() {
         for (density, (depth, tilt)) in depths {
             // The water stays half a spacing away from the cube's faces, a twentieth of its edge at this resolution.
             assert!((depth - density / 1000.0).abs() < 0.08, "{method}, {density}: {depth}");
-            assert!(tilt < 0.6, "{method}, {density}: {tilt}");
+            // A homogeneous cube floats upright only below 0.211 and above 0.789 of the water's density; between these it
+            // turns onto an edge or a corner (Gilbert 1991, American Mathematical Monthly 98, 201).
+            if !(211.0..789.0).contains(&density) {
+                assert!(tilt < 0.1, "{method}, {density}: {tilt}");
+            }
         }
     }
 }
