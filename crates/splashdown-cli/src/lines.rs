@@ -52,7 +52,11 @@ pub struct Line {
     /// Pressure iterations since the start.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub iterations: Option<u64>,
-    /// The largest mean error of the density at which the iterations of a step since the last frame stopped.
+    /// The mean error of the density at which the pressure iterations stop; in the first and the last line.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f32>,
+    /// The largest mean error of the density at which the iterations of a step since the last frame stopped, or of the whole
+    /// run at its end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub residual: Option<f32>,
     /// Mean compression since the last frame, or of the whole run at its end, from the positions of the particles.
@@ -105,6 +109,7 @@ impl Line {
             particles: Some(started.particles),
             frames: Some(started.frames),
             dt: Some(started.dt),
+            tolerance: started.tolerance,
             frame: Some(started.first_frame),
             time: Some(started.time),
             steps: Some(started.steps),
@@ -159,6 +164,8 @@ impl Line {
             wall: Some(summary.wall),
             simulated_per_wall: Some(summary.simulated_per_wall),
             particle_steps_per_second: Some(summary.particle_steps_per_second),
+            tolerance: summary.tolerance,
+            residual: summary.tolerance.map(|_| summary.residual),
             compression: (summary.stats.iterations > 0).then_some(summary.stats.mean_compression),
             ..Self::of_stats(&summary.stats)
         }

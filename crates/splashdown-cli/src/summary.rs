@@ -47,9 +47,13 @@ pub fn numbers(summary: &Summary) -> String {
     ];
     if stats.iterations > 0 {
         rows.insert(6, ("pressure", pressure(stats)));
+        if let Some(tolerance) = summary.tolerance {
+            rows.insert(7, ("", residual(summary.residual, tolerance)));
+        }
     }
     if stats.viscous_iterations > 0 {
-        rows.insert(7, ("viscosity", viscosity(stats)));
+        let after = rows.iter().position(|row| row.0 == "density error").unwrap_or(rows.len());
+        rows.insert(after, ("viscosity", viscosity(stats)));
     }
     if stats.emitted > 0 || stats.drained > 0 {
         let text = format!(
@@ -88,6 +92,11 @@ fn pressure(stats: &Stats) -> String {
         human::three_digits(100.0 * stats.mean_compression),
         unconverged(stats.unconverged)
     )
+}
+
+fn residual(residual: f32, tolerance: f32) -> String {
+    let percent = |part: f32| human::three_digits(100.0 * f64::from(part));
+    format!("residual at most {} % of the density, tolerance {} %", percent(residual), percent(tolerance))
 }
 
 fn viscosity(stats: &Stats) -> String {

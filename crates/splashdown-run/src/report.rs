@@ -104,6 +104,18 @@ pub(crate) struct Numbers {
     density_error: f32,
     surface_volume: Option<[f64; 2]>,
     particle_volume: f64,
+    /// Of an implicit pressure.
+    pressure: Option<PressureNumbers>,
+}
+
+/// An implicit pressure: errors of the density are parts of the rest density.
+#[derive(Debug, Serialize)]
+struct PressureNumbers {
+    iterations: u64,
+    tolerance: f32,
+    residual: f32,
+    mean_compression: f64,
+    unconverged: u32,
 }
 
 /// How often a pass ran, and its total time.
@@ -172,6 +184,13 @@ impl Report {
             density_error: summary.density_error,
             surface_volume: summary.volume,
             particle_volume: summary.particle_volume,
+            pressure: summary.tolerance.map(|tolerance| PressureNumbers {
+                iterations: summary.stats.iterations,
+                tolerance,
+                residual: summary.residual,
+                mean_compression: summary.stats.mean_compression,
+                unconverged: summary.stats.unconverged,
+            }),
         });
     }
 

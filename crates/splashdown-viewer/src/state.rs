@@ -216,12 +216,16 @@ pub struct Figures {
     pub mean_height: f32,
     /// Triangles of the surface, if there is one.
     pub triangles: Option<u32>,
-    /// Largest relative excess of density.
+    /// The larger one of the relative excess and deficit of density.
     pub density_error: f32,
     /// Pressure iterations per step since the start; zero with an explicit pressure.
     pub iterations: f64,
     /// Mean relative excess of density, if the pressure is implicit.
     pub compression: f32,
+    /// The largest mean error of the density at which the iterations of a step stopped, if the pressure is implicit.
+    pub residual: f32,
+    /// Viscosity iterations per step since the start; zero with an explicit viscosity.
+    pub viscous_iterations: f64,
     /// Bytes in the simulation's buffers.
     pub memory: u64,
     /// The simulating device.

@@ -84,6 +84,9 @@ impl Viewer {
         figures.density_error = snapshot.stats.density_error;
         figures.iterations = snapshot.stats.iterations as f64 / snapshot.stats.steps.max(1) as f64;
         figures.compression = snapshot.stats.compression;
+        figures.residual = snapshot.stats.residual;
+        figures.viscous_iterations =
+            snapshot.stats.viscous_iterations as f64 / snapshot.stats.steps.max(1) as f64;
         figures.triangles = snapshot.drawn.mesh().map(|mesh| mesh.stats.triangles);
         figures.timings = Arc::clone(&snapshot.timings);
         figures.timed_steps = snapshot.timed_steps;

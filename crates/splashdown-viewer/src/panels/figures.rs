@@ -57,12 +57,12 @@ fn items(figures: &Figures, played: Option<&Timeline>) -> Vec<(String, &'static 
 
 /// The dialog of all numbers, with the time per pass.
 pub(super) fn show_statistics(ctx: &egui::Context, state: &mut State, over: Rect) {
-    let figures = &state.figures;
+    let (figures, tolerance) = (&state.figures, state.scene.solver.tolerance);
     let shown = &mut state.shown;
     dialog::new("Statistics", over).open(&mut shown.statistics).resizable(false).show(ctx, |ui| {
         ScrollArea::vertical().max_height(dialog::inner_height(over)).show(ui, |ui| {
             Grid::new("numbers").striped(true).num_columns(2).show(ui, |ui| {
-                for (name, text) in numbers(figures) {
+                for (name, text) in numbers(figures, tolerance) {
                     ui.label(name);
                     ui.monospace(text);
                     ui.end_row();
@@ -79,20 +79,25 @@ pub(super) fn show_statistics(ctx: &egui::Context, state: &mut State, over: Rect
     shown.timings &= shown.statistics;
 }
 
-fn numbers(figures: &Figures) -> Vec<(&'static str, String)> {
+fn numbers(figures: &Figures, tolerance: f32) -> Vec<(&'static str, String)> {
     let mut numbers = vec![
         ("device", figures.device.clone()),
         ("memory", format!("{:.0} MB", figures.memory as f64 / 1e6)),
         ("steps per second", format!("{:.0}", figures.steps_per_second)),
         ("time step", seconds(figures.dt.into())),
-        ("largest density excess", format!("{:.1} %", 100.0 * figures.density_error)),
+        ("density error", format!("{:.1} %", 100.0 * figures.density_error)),
     ];
     if figures.mean_height.is_finite() {
         numbers.push(("mean height", format!("{:.3} m", figures.mean_height)));
     }
     if figures.iterations > 0.0 {
         numbers.push(("pressure iterations per step", format!("{:.1}", figures.iterations)));
+        let residual = format!("{:.3} % (tolerance {:.3} %)", 100.0 * figures.residual, 100.0 * tolerance);
+        numbers.push(("pressure residual", residual));
         numbers.push(("mean density excess", format!("{:.2} %", 100.0 * figures.compression)));
+    }
+    if figures.viscous_iterations > 0.0 {
+        numbers.push(("viscosity iterations per step", format!("{:.1}", figures.viscous_iterations)));
     }
     numbers
 }

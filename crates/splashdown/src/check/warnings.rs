@@ -36,6 +36,17 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
             }
         }
     }
+    // An explicit step is never longer than this estimate, whose limits leave out the speeds that occur.
+    let is_explicit = scene.solver.method != Method::Dfsph;
+    if is_explicit && solver.has("min_dt") && scene.solver.min_dt > derived.dt_estimate {
+        let limit = derived.dt_estimate;
+        let message = format!(
+            "solver.min_dt = {} s is longer than the stable time step of this scene, {limit:.3e} s, which is limited by {}",
+            scene.solver.min_dt, derived.dt_limit
+        );
+        let hint = "leave the key out, or use a coarser particle_spacing or a lower sound_speed";
+        return Err(solver.complain("min_dt", message, &format!("at most {limit:.3e} s"), hint));
+    }
     check_viscosity(scene, solver, derived);
     check_room(scene, root, solver);
     if scene.solver.surface_tension == SurfaceTension::Csf && !scene.bodies.is_empty() {

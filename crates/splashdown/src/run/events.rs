@@ -154,6 +154,9 @@ pub struct Started {
     pub memory: u64,
     /// The first time step in seconds.
     pub dt: f32,
+    /// The mean error of the density at which the pressure iterations stop, over the rest density; `None` if the pressure
+    /// is explicit.
+    pub tolerance: Option<f32>,
 }
 
 /// The progress of a run.
@@ -233,6 +236,12 @@ pub struct Summary {
     pub simulated_per_wall: f64,
     /// The largest density error of all frames, of excess and deficit.
     pub density_error: f32,
+    /// The mean error of the density at which the pressure iterations stop, over the rest density; `None` if the pressure
+    /// is explicit.
+    pub tolerance: Option<f32>,
+    /// The largest mean error of the density at which the iterations of a step stopped, since the start or the checkpoint;
+    /// zero if the pressure is explicit.
+    pub residual: f32,
     /// The energy balance at the end.
     pub energy: EnergyBalance,
     /// The highest level of the monitor.

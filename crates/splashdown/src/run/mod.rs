@@ -66,6 +66,7 @@ pub struct Run {
     reported: Instant,
     clock: Clock,
     density_error: f32,
+    residual: f32,
     volume: Option<[f64; 2]>,
     particle_volume: f64,
     volume_per_particle: f64,
@@ -159,6 +160,7 @@ impl Run {
             reported: started,
             clock: Clock::default(),
             density_error: 0.0,
+            residual: 0.0,
             volume: None,
             particle_volume,
             volume_per_particle,
@@ -223,6 +225,7 @@ impl Run {
             frames: self.frames,
             memory: self.simulation.memory(),
             dt: self.simulation.dt(),
+            tolerance: self.tolerance(),
         })
     }
 
@@ -345,6 +348,7 @@ impl Run {
             ..stats
         };
         self.density_error = self.density_error.max(stats.density_error);
+        self.residual = self.residual.max(stats.residual);
         self.last = stats;
         let mut probes = self.simulation.take_probe_rows();
         self.fluid_probes.read(&mut probes, time, &particles, &energy.terms());
@@ -366,6 +370,12 @@ impl Run {
         })
     }
 
+    /// The tolerance of an implicit pressure.
+    fn tolerance(&self) -> Option<f32> {
+        let params = self.simulation.params();
+        (params.is_implicit == 1).then_some(params.tolerance)
+    }
+
     fn finish(&mut self) -> Event {
         self.stage = Stage::End;
         // The time of the simulation is exact; a frame has its nominal time.
@@ -383,6 +393,8 @@ impl Run {
             particle_steps_per_second: self.particle_steps / step_wall.max(f64::MIN_POSITIVE),
             simulated_per_wall: (stats.time - self.start_time) / wall,
             density_error: self.density_error,
+            tolerance: self.tolerance(),
+            residual: self.residual,
             energy: self.energy,
             level: self.monitor.level(),
             volume: self.volume,

@@ -1,6 +1,6 @@
 //! `dfsph`: a block that collapses in a closed box, deep water, a drop that falls on a wide pool, and a tank at rest.
 
-use splashdown::{Simulation, SimulationError, Stats, sample};
+use splashdown::{Device, Event, Run, RunOptions, Simulation, SimulationError, Stats, sample};
 
 use super::cases::{Case, Variant};
 use super::figures::Figures;
@@ -257,4 +257,33 @@ fn the_pressure_in_a_sealed_space_is_bounded() {
     // Control: without gravity there is no compressibility.
     let result = sealed_vortex(0.0);
     assert!(matches!(result, Err(SimulationError::StepTooSmall { .. })), "{result:?}");
+}
+
+/// The warnings of a collapsing column of 10 x 20 x 10 particles with these keys.
+fn warnings(solver: &str, viscosity: f64) -> Vec<String> {
+    let scene = scene(&format!(
+        "[scene]\nname = \"column\"\nduration = 0.1\n[domain]\nmin = [0, 0, 0]\nmax = [0.4, 0.8, 0.4]\nopen = [\"y_max\"]\n\
+         [fluid]\nparticle_spacing = 0.02\nviscosity = {viscosity}\n[[fluid.block]]\nposition = [0, 0, 0]\n\
+         size = [0.2, 0.4, 0.2]\n[solver]\nmethod = \"dfsph\"\n{solver}\n"
+    ));
+    let options = RunOptions::new(&scene).with_device(Device::Cpu);
+    let events = Run::new(&scene, options).unwrap().map(Result::unwrap);
+    events
+        .filter_map(|event| match event {
+            Event::Warning(text) => Some(text),
+            _ => None,
+        })
+        .collect()
+}
+
+#[test]
+fn iterations_that_do_not_converge_are_reported() {
+    let has = |warnings: &[String], words: &str| warnings.iter().any(|text| text.contains(words));
+    let pressure = warnings("max_iterations = 2\ntolerance = 1e-5", 1e-6);
+    assert!(has(&pressure, "did not reach solver.tolerance within solver.max_iterations"), "{pressure:?}");
+    let viscous = warnings("max_iterations = 4", 100.0);
+    assert!(has(&viscous, "m^2/s did not converge in"), "{viscous:?}");
+    // Control: with the defaults both converge.
+    let sound = warnings("", 0.1);
+    assert!(!has(&sound, "did not"), "{sound:?}");
 }

@@ -69,6 +69,7 @@ snapshot!(no_blocks, changed("[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5
 snapshot!(block_without_list, changed("[[fluid.block]]", "[fluid.block]"));
 snapshot!(block_of_two_shapes, changed("position = [0, 0, 0]", "shape = \"sphere\"\nradius = 0.1"));
 snapshot!(min_dt_above_max_dt, format!("{CUBE}min_dt = 0.01\n"));
+snapshot!(min_dt_above_the_stable_step, format!("{CUBE}sound_speed = 10\nmin_dt = 2e-3\n"));
 snapshot!(too_many_frames, changed("duration = 1.0", "duration = 3600").replace("25", "1000"));
 snapshot!(
     contradictions,
@@ -131,7 +132,7 @@ snapshot!(
     overlap_warning,
     format!("{CUBE}[[fluid.block]]\nposition = [0.25, 0, 0]\nsize = [0.5, 0.5, 0.5]\n")
 );
-snapshot!(doubtful_values, changed("0.5, 0.5, 0.5", "0.52, 0.5, 0.5") + "sound_speed = 10\nmin_dt = 2e-3\n");
+snapshot!(doubtful_values, changed("0.5, 0.5, 0.5", "0.52, 0.5, 0.5") + "sound_speed = 10\n");
 snapshot!(long_line, changed("duration = 1.0", &format!("\"{}\" = 1{}", "k".repeat(300), " ".repeat(10))));
 snapshot!(
     many_at_once,
