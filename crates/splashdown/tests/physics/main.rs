@@ -34,6 +34,7 @@ mod submerged;
 mod tilted;
 mod torricelli;
 mod viscosity;
+mod volume;
 mod vortex;
 mod waves;
 mod wedge;
@@ -68,6 +69,7 @@ const CASES: &[&[&cases::Case]] = &[
     tilted::CASES,
     torricelli::CASES,
     viscosity::CASES,
+    volume::CASES,
     vortex::CASES,
     waves::CASES,
     wedge::CASES,
