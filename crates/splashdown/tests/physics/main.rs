@@ -22,12 +22,15 @@ mod jet;
 #[path = "../meshes/mod.rs"]
 mod meshes;
 mod patch;
+mod planar_jet;
+mod progressive;
 mod ritter;
 mod roll;
 mod sessile;
 mod shapes;
 mod sloshing;
 mod spheric2;
+mod step;
 mod still_water;
 mod stretching;
 mod submerged;
@@ -58,12 +61,15 @@ const CASES: &[&[&cases::Case]] = &[
     implicit::CASES,
     jet::CASES,
     patch::CASES,
+    planar_jet::CASES,
+    progressive::CASES,
     ritter::CASES,
     roll::CASES,
     sessile::CASES,
     sloshing::CASES,
     spheric2::CASES,
     still_water::CASES,
+    step::CASES,
     stretching::CASES,
     submerged::CASES,
     tilted::CASES,

@@ -44,7 +44,7 @@ fn sloshing_water_keeps_its_volume() {
     CASE.run(|variant, across, figures| {
         let spacing = BLOCK[1] / f64::from(across);
         let scene = scene(&format!(
-            "[scene]\nname = \"volume\"\nduration = {DURATION}\n[domain]\nmin = [0, 0, 0]\nmax = [{LENGTH}, 1.6, {WIDTH}]\n\
+            "[scene]\nname = \"volume\"\nduration = {DURATION}\n[domain]\nmin = [0, 0, 0]\nmax = [{LENGTH}, 4, {WIDTH}]\n\
              open = [\"y_max\"]\n[fluid]\nparticle_spacing = {spacing}\n[[fluid.block]]\nposition = [0, 0, 0]\n\
              size = [{}, {}, {WIDTH}]\n[solver]\n{}\n",
             BLOCK[0], BLOCK[1], variant.keys,

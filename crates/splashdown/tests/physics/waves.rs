@@ -130,7 +130,23 @@ static CASE: Case = Case {
         CONTROL,
     ],
 };
-pub const CASES: &[&Case] = &[&CASE];
+/// The same wave in a liquid for which Lamb's theory predicts a loss of 5 % per period.
+static VISCOUS: Case = Case {
+    name: "viscous wave",
+    across: "depth",
+    sizes: &[20, 28, 40],
+    variants: &[
+        Variant::new("continuity", "density = \"continuity\""),
+        Variant::extra("engineering", "accuracy = \"engineering\""),
+        Variant::extra("summation", "density = \"summation\""),
+        Variant::extra("dfsph", "method = \"dfsph\""),
+        Variant::extra("dfsph, support 3", "method = \"dfsph\"\nsupport_ratio = 3"),
+    ],
+};
+pub const CASES: &[&Case] = &[&CASE, &VISCOUS];
+
+/// The loss of height per period in the viscous case.
+const LOSS: f64 = 0.05;
 
 impl Measured {
     /// The relative error of the period.
@@ -150,6 +166,19 @@ fn a_standing_wave_keeps_its_height_and_its_period() {
         let exact: Series = measured.curve.iter().map(|&(t, _)| (t, theory(t))).collect();
         let title = "Centre of mass (dots: linear theory)";
         figures.plot(title, ["time, s", "x, m"], &exact, &measured.curve);
+    });
+}
+
+#[test]
+fn a_viscous_wave_decays_as_lamb_predicts() {
+    let period = std::f64::consts::TAU / frequency();
+    let viscosity = -(1.0 - LOSS).ln() / (2.0 * wave_number().powi(2) * period);
+    let periods = if is_validation() { 3.1 } else { 1.6 };
+    VISCOUS.run(|variant, across, figures| {
+        let measured = Wave { across, viscosity, solver: variant.keys, periods }.measure();
+        figures.error("loss of height per period over theory, minus one", measured.loss / LOSS - 1.0);
+        figures.measure("the same for 1.3 nu, difference", (measured.loss / (1.3 * LOSS) - 1.0).abs());
+        figures.error("relative error of the period", measured.period_error());
     });
 }
 
