@@ -121,6 +121,8 @@ pub use mouse_force::MouseForce;
 pub use reconstruct::reconstruct;
 pub use run::{Event, Run, RunOptions};
 pub use scene::{Scene, SceneBuilder};
+#[doc(hidden)]
+pub use schemes::longest_step;
 pub use simulation::Simulation;
 pub use simulation::{InitialDensity, Packing};
 #[doc(hidden)]

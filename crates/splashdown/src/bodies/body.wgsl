@@ -65,7 +65,7 @@ fn direction(contact: Contact, scale: f32) -> vec3<f32> {
 // The acceleration that continues `a` into a body; see Contact in types.rs.
 fn continued(contact: Contact, a: vec3<f32>, scale: f32) -> vec3<f32> {
     let n = direction(contact, scale);
-    let fraction = clamp(contact.kernel_fraction, 0.0, 0.6);
+    let fraction = clamp(contact.density, 0.0, 0.6);
     return fraction / (1.0 - fraction) * (a - dot(a, n) * n);
 }
 

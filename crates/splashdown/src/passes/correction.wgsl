@@ -22,6 +22,12 @@ fn shifting(strain: Symmetric, determinant: f32) -> f32 {
     return complete * 4.0 * params.support_radius * params.support_radius * sqrt(contract(strain, strain));
 }
 
+fn volume_recovery(m: Symmetric, strain: Symmetric, determinant: f32) -> f32 {
+    let excess = dot(m.diagonal, vec3(1.0)) / (3.0 * params.lattice_moment) - 1.0;
+    let complete = clamp(12.5 * (determinant - 0.82), 0.0, 1.0);
+    return 4.0 * sqrt(contract(strain, strain)) * (max(excess, 0.0) + complete * min(excess, 0.0));
+}
+
 fn without_tension(density: f32, determinant: f32) -> f32 {
     let deficit = min(density - params.rest_density, 0.0);
     return density - (1.0 - clamp(4.0 * determinant, 0.0, 1.0)) * deficit;

@@ -17,7 +17,7 @@ mod step;
 mod tests;
 mod wcsph;
 
-pub use params::params;
+pub use params::{longest_step, params};
 pub use step::{Couplings, Step};
 
 use splashdown_gpu::{DispatchSize, Recording};

@@ -24,6 +24,13 @@ fn wetting_cosine(solver: &Solver) -> f32 {
     solver.contact_angle.to_radians().cos()
 }
 
+/// The longest time step of a scene in s, whatever the speeds: `max_dt` and the limits by body forces, viscosity and surface
+/// tension.
+pub fn longest_step(scene: &Scene) -> f32 {
+    let longest = params(scene, 0).max_dt;
+    if Scheme::new(scene).is_implicit() { longest } else { longest.min(Derived::viscous_dt(scene)) }
+}
+
 /// The constants of a scene with this number of particles.
 pub fn params(scene: &Scene, particles: u32) -> Params {
     let (solver, material) = (&scene.solver, &scene.fluid.material);
@@ -62,8 +69,13 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
     } else {
         solver.max_dt
     };
+    let pressure_factor = dfsph::pressure_factor(solver.kernel, f64::from(solver.support_ratio));
     let solid = if scheme.is_implicit() {
         SolidDistance::of_lattice(scheme.walls(), solver.support_ratio)
+    } else if solver.method == Method::Wcsph {
+        // An integrated density needs no normalised kernel.
+        let whole = if scheme.is_density_integrated { derived.lattice_sum as f32 } else { 1.0 };
+        SolidDistance::of_layers(scheme.walls(), solver.support_ratio, whole)
     } else {
         SolidDistance::of_density(scheme.walls(), solver.support_ratio)
     };
@@ -113,7 +125,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         } else {
             0.5
         },
-        pressure_factor: dfsph::pressure_factor(solver.kernel, f64::from(solver.support_ratio)),
+        pressure_factor,
         implicit_viscosity,
         viscous_factor: implicit_viscosity * volume * viscous::pair::factor(support_radius)
             / viscous::pair::lattice_factor(f64::from(solver.support_ratio)) as f32,
@@ -143,6 +155,6 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         solid_stretch: solid.stretch,
         slope_offset: scene.fluid.particle_spacing * solid.slope_offset,
         background_pressure: 0.0,
-        unused: 0.0,
+        lattice_moment: pressure_factor * derived.lattice_sum as f32,
     }
 }

@@ -63,7 +63,7 @@ fn checkpoint(kernel: KernelKind) -> Checkpoint {
     particles.ids = (0..particles.len() as u32).collect();
     let executor = splashdown_gpu::CpuExecutor::new().into();
     let mut simulation = Simulation::with_particles(&scene, executor, &particles).unwrap();
-    simulation.advance(0.02).unwrap();
+    simulation.advance(0.03).unwrap();
     let text = SCENE.replace("[solver]", &format!("[solver]\nkernel = \"{kernel}\""));
     simulation.checkpoint(&text).unwrap()
 }

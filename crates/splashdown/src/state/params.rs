@@ -107,8 +107,8 @@ gpu_struct! {
         slope_offset: f32,
         /// Pressure at the rest density in Pa; not zero in the initial packing only.
         background_pressure: f32,
-        /// Uniform buffers are multiples of 16 bytes.
-        unused: f32,
+        /// The trace of the sum M of `passes::correction` over three, on the initial lattice.
+        lattice_moment: f32,
     }
 }
 

@@ -48,7 +48,7 @@ struct Params {
     solid_stretch: f32,
     slope_offset: f32,
     background_pressure: f32,
-    unused: f32,
+    lattice_moment: f32,
 }
 
 fn pressure_at(density: f32) -> f32 {

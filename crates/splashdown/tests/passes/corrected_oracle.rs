@@ -60,7 +60,7 @@ pub fn continuity(world: &World, kernel: Kernel, boundary: Option<&[glam::Vec4]>
             diffusion
                 .add(DVec3::X * 2.0 * delta * (0.5 * c.support) * c.sound * psi * (-d).dot(g) / softened);
         });
-        let (mut open, mut alone) = (1.0, None);
+        let (mut open, mut away, mut alone) = (1.0, 1.0, None);
         if let Some(vectors) = boundary {
             // Across the surfaces of bodies and, for the pressure, along them.
             let (across, fraction) = (symmetric(vectors, i), f64::from(vectors[2 * i].w));
@@ -72,14 +72,27 @@ pub fn continuity(world: &World, kernel: Kernel, boundary: Option<&[glam::Vec4]>
             }
             matrix_size += 1.0;
             open = (1.0 - 20.0 * f64::from(vectors[2 * i].w)).max(0.0);
+            away = (1.0 - 100.0 * f64::from(vectors[2 * i].w)).max(0.0);
         }
         let determinant = matrix.determinant();
         let (determinant_size, inverse_size) = (matrix_size.powi(3), 1.0 + matrix_size.powi(2));
         let corrected = correction(matrix);
         let matrix_error = inverse_size * (1.0 + determinant_size);
         let strain = 0.5 * (gradient + gradient.transpose());
-        let rate = rho(i) * contract(alone.map_or(corrected, correction), strain) + diffusion.value.x;
-        let rate_size = rho(i) * matrix_error * gradient_size + diffusion.size;
+        // The density follows the positions, where it is too low, or inside the fluid: below a determinant of 0.82 a deficit
+        // does not count.
+        let excess = (0..3).map(|k| matrix.col(k)[k]).sum::<f64>()
+            / (3.0 * f64::from(world.params.lattice_moment))
+            - 1.0;
+        let inside = if excess > 0.0 { 1.0 } else { ((determinant - 0.82) / 0.08).clamp(0.0, 1.0) };
+        let recovery = away * 4.0 * contract(strain, strain).sqrt() * inside * excess;
+        // Rounding of the determinant matters where a deficit fades.
+        let fading =
+            if excess < 0.0 && (0.7..1.0).contains(&determinant) { 12.5 * determinant_size } else { 0.0 };
+        let recovery_size = away * 4.0 * gradient_size * (1.0 + matrix_size) * (1.0 + fading);
+        let rate =
+            rho(i) * (contract(alone.map_or(corrected, correction), strain) + recovery) + diffusion.value.x;
+        let rate_size = rho(i) * (matrix_error * gradient_size + recovery_size) + diffusion.size;
         let next = rho(i) + c.dt * rate;
         // Fragments keep no deficit of density.
         let kept = (4.0 * determinant).clamp(0.0, 1.0);
@@ -87,11 +100,12 @@ pub fn continuity(world: &World, kernel: Kernel, boundary: Option<&[glam::Vec4]>
         let deficit = (c.rest - next).max(0.0);
         // Zero at a determinant of 0.45, one at 0.9.
         let complete = ((determinant - 0.45) / 0.45).clamp(0.0, 1.0);
-        let scale = open * 4.0 * c.support.powi(2);
+        let scale = away * 4.0 * c.support.powi(2);
         Continued {
             density: (density, rho(i) + c.dt * rate_size + 4.0 * determinant_size * deficit),
             // Where a body fills a twentieth of the kernel, gradients are not corrected.
-            matrix: open * corrected + (1.0 - open) * DMat3::IDENTITY,
+            matrix: open * corrected
+                + (1.0 - open) / f64::from(world.params.lattice_moment) * DMat3::IDENTITY,
             matrix_size: matrix_error,
             shifting: (
                 scale * complete * contract(strain, strain).sqrt(),

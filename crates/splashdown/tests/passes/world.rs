@@ -61,6 +61,7 @@ pub fn params(support_ratio: f32) -> Params {
         relaxation: 0.5,
         longest_motion: 0.5,
         pressure_factor: 0.9,
+        lattice_moment: 0.95,
         surface_completion: 0.24,
         implicit_viscosity: 0.02,
         viscous_factor: 0.02 * SPACING.powi(3) * 525.0

@@ -1,5 +1,4 @@
-//! Floating balls. The draft follows Archimedes within 4 % of the diameter, corrected by the gap of half a spacing
-//! between water and body. The heave period follows from an added mass of half the displaced mass, within 10 %.
+//! Floating balls. The draft follows Archimedes within 4 % of the diameter. The heave period follows from an added mass of half the displaced mass, within 10 %.
 
 use glam::Vec3;
 use splashdown::scene::{MeshShape, Motion, Scene};

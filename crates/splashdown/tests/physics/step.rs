@@ -36,9 +36,9 @@ fn water_over_a_step_stays_still() {
         let half = 0.5 * spacing;
         let gauges = [
             ("floor", 0.25 * LENGTH, half),
-            ("inner edge", 0.5 * LENGTH - half, half),
+            ("inner-edge", 0.5 * LENGTH - half, half),
             ("face", 0.5 * LENGTH - half, 0.25 * DEPTH),
-            ("outer edge", 0.5 * LENGTH + half, 0.5 * DEPTH + half),
+            ("outer-edge", 0.5 * LENGTH + half, 0.5 * DEPTH + half),
             ("top", 0.75 * LENGTH, 0.5 * DEPTH + half),
         ];
         let probes: String = gauges

@@ -77,7 +77,7 @@ fn the_consistent_distance_has_the_value_and_the_slope_of_a_lattice() {
         (KernelPair::CubicSpline, 2.0),
         (KernelPair::WendlandC2, 3.0),
     ] {
-        let [missing, gradient] = half_lattice_sums(kernels, ratio);
+        let [missing, gradient] = half_lattice_sums(kernels, ratio, 0.5);
         let solid = SolidDistance::of_lattice(kernels, ratio);
         let (density, slope) = kernels.density((0.25 + 0.25 * solid.stretch + solid.offset) / ratio);
         assert!(
@@ -88,10 +88,40 @@ fn the_consistent_distance_has_the_value_and_the_slope_of_a_lattice() {
     }
     // Control: the offset alone makes the gradient of the narrow supports too small.
     for kernels in [KernelPair::WendlandC2, KernelPair::WendlandBlend] {
-        let [_, gradient] = half_lattice_sums(kernels, 2.0);
+        let [_, gradient] = half_lattice_sums(kernels, 2.0, 0.5);
         let plain = SolidDistance::of_density(kernels, 2.0);
         let slope = kernels.density((0.5 + plain.offset) / 2.0).1;
         assert!(slope / gradient < 0.9, "{kernels:?}: {slope}");
+    }
+}
+
+#[test]
+fn the_distance_for_two_layers_has_their_gradients() {
+    for (kernels, ratio) in [
+        (KernelPair::WendlandC2, 2.0_f32),
+        (KernelPair::WendlandBlend, 2.0),
+        (KernelPair::CubicSpline, 2.0),
+        (KernelPair::WendlandC2, 2.5),
+        (KernelPair::WendlandC2, 3.0),
+        (KernelPair::CubicSpline, 4.0),
+    ] {
+        let error = |solid: SolidDistance, distance: f32| {
+            let [_, gradient] = half_lattice_sums(kernels, ratio, distance.into());
+            let stretched = distance + (solid.stretch - 1.0) * (distance - STRETCHED_FROM);
+            let q = (stretched + solid.slope_offset) / ratio;
+            let slope = if q < 1.0 { solid.stretch * kernels.density(q).1 } else { 0.0 };
+            (slope - gradient).abs()
+        };
+        let solid = SolidDistance::of_layers(kernels, ratio, 1.0);
+        let errors = [error(solid, 0.5), error(solid, 1.5)];
+        assert!(errors.iter().all(|error| *error < 2e-3), "{kernels:?} {ratio}: {errors:?} {solid:?}");
+        let [missing, _] = half_lattice_sums(kernels, ratio, 0.5);
+        let q = (0.25 + 0.25 * solid.stretch + solid.offset) / ratio;
+        assert!((kernels.density(q).0 - missing).abs() < 1e-3, "{kernels:?} {ratio}");
+        // Control: with the density alone the gradient is off at one of the layers.
+        let plain = SolidDistance::of_density(kernels, ratio);
+        let errors = [error(plain, 0.5), error(plain, 1.5)];
+        assert!(errors.iter().any(|error| *error > 0.02), "{kernels:?} {ratio}: {errors:?}");
     }
 }
 
@@ -103,7 +133,7 @@ fn the_lattice_behind_a_plane_matches_independent_values() {
         (KernelPair::WendlandBlend, 2.0, 0.1397, 0.9767),
         (KernelPair::WendlandC2, 3.0, 0.2495, 1.2847),
     ] {
-        let [part, slope] = half_lattice_sums(kernels, ratio);
+        let [part, slope] = half_lattice_sums(kernels, ratio, 0.5);
         assert!(
             (part - missing).abs() < 1e-4 && (slope - gradient).abs() < 1e-3,
             "{kernels:?}: {part} {slope}"

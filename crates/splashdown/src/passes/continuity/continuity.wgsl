@@ -64,6 +64,7 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     }
     var whole = Symmetric(-moment.diagonal, -moment.others);
     var open = 1.0;
+    var away = 1.0;
     var alone = whole;
     var fraction = 0.0;
     if (BODIES == 1u) {
@@ -77,16 +78,18 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
         alone = Symmetric(whole.diagonal + across.diagonal, whole.others + across.others);
         whole = Symmetric(alone.diagonal + fraction - part * across.diagonal, alone.others - part * across.others);
         open = max(1.0 - 20.0 * fraction, 0.0);
+        away = max(1.0 - 100.0 * fraction, 0.0);
     }
     let corrected = correction_of(whole);
     var divergence = contract(corrected.matrix, strain);
     if (fraction > 0.0) {
         divergence = contract(correction_of(alone).matrix, strain);
     }
+    divergence += away * volume_recovery(whole, strain, corrected.determinant);
     let rate = rho * divergence - params.density_diffusion * support * params.sound_speed * diffusion;
     let next = without_tension(rho + state.dt * rate, corrected.determinant);
     densities[i] = vec2(next, pressure_at(next));
-    let diagonal = open * corrected.matrix.diagonal + (1.0 - open);
-    corrections[2u * i] = vec4(diagonal, open * shifting(strain, corrected.determinant));
+    let diagonal = open * corrected.matrix.diagonal + (1.0 - open) / params.lattice_moment;
+    corrections[2u * i] = vec4(diagonal, away * shifting(strain, corrected.determinant));
     corrections[2u * i + 1u] = vec4(open * corrected.matrix.others, 0.0);
 }

@@ -6,7 +6,7 @@ use super::ContinuityBindings;
 use crate::boundary::{Images, Reflection};
 use crate::kernel::Kernel;
 use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, scaled, splat};
-use crate::passes::correction::{correction, shifting, without_tension};
+use crate::passes::correction::{correction, shifting, volume_recovery, without_tension};
 use crate::simd::Register;
 use crate::state::{Params, Symmetric};
 
@@ -115,7 +115,7 @@ impl<K: Kernel, const BODIES: bool> PairSum<8, 13> for Continuity<'_, K, BODIES>
         let [xx, yy, zz, xy, xz, yz, uxx, uyy, uzz, uxy, uxz, uyz, diffusion] = sums;
         let fluid = Symmetric { diagonal: -Vec3::new(xx, yy, zz), others: -Vec3::new(xy, xz, yz) };
         let strain = Symmetric { diagonal: Vec3::new(uxx, uyy, uzz), others: 0.5 * Vec3::new(uxy, uxz, uyz) };
-        let (mut whole, mut open) = (fluid, 1.0);
+        let (mut whole, mut open, mut away) = (fluid, 1.0, 1.0);
         let mut divergence = None;
         if BODIES && self.boundary[i][0].w > 0.0 {
             // Across the surface of a body the solid is a part of the kernel. Along the surface the fluid alone determines
@@ -125,15 +125,17 @@ impl<K: Kernel, const BODIES: bool> PairSum<8, 13> for Continuity<'_, K, BODIES>
             divergence = Some(correction(without).0.contract(strain));
             whole = without.plus(across.rest_of_unit().times(fraction));
             open = (1.0 - 20.0 * fraction).max(0.0);
+            away = (1.0 - 100.0 * fraction).max(0.0);
         }
         let (b, determinant) = correction(whole);
         let divergence = divergence.unwrap_or(b.contract(strain));
         let rho = self.velocities[i].w;
-        let next = rho + self.dt * (rho * divergence - self.diffusion * diffusion);
+        let rate = divergence + away * volume_recovery(self.params, whole, strain, determinant);
+        let next = rho + self.dt * (rho * rate - self.diffusion * diffusion);
         let next = without_tension(self.params, next, determinant);
-        let shifting = open * shifting(self.params, strain, determinant);
+        let shifting = away * shifting(self.params, strain, determinant);
         let density = Vec2::new(next, self.params.pressure_at(next));
-        let diagonal = open * b.diagonal + (1.0 - open);
+        let diagonal = open * b.diagonal + (1.0 - open) / self.params.lattice_moment;
         (density, [diagonal.extend(shifting), (open * b.others).extend(0.0)])
     }
 }

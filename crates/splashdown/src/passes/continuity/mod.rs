@@ -3,22 +3,25 @@
 //! ```text
 //! d rho_i / dt = rho_i sum (m/rho_j) v.(B_i grad W)
 //!              + 2 delta h c0 sum (m/rho_j) psi_ij (x_j - x_i).grad W / (r^2 + 0.01 H^2)
+//!              + rho_i R_i
 //! ```
 //!
 //! with v = v_i - v_j and h = H / 2, and the matrix B_i of `passes::correction`, for which the
 //! divergence of a linear velocity field is exact. The second term is the diffusion of Molteni & Colagrossi (2009),
-//! where psi_ij is rho_j - rho_i minus the hydrostatic difference (Fourtakas et al. 2019). The sums include the images
-//! behind walls. A fragment then loses its tension (`without_tension`).
+//! where psi_ij is rho_j - rho_i minus the hydrostatic difference (Fourtakas et al. 2019). R is the
+//! recovery of the volume (`correction::volume_recovery`). The sums include the images behind walls. A fragment then loses
+//! its tension (`without_tension`).
 //!
 //! Near a body, the body is a part of the sum M across its surface. Along the surface the divergence uses the fluid
-//! alone. Bodies contribute to the density afterwards. The matrix for the forces fades to the unit matrix where a body
+//! alone. Bodies contribute to the density afterwards. The matrix for the forces fades to that of a lattice where a body
 //! fills a twentieth of the kernel: M is a sum over particles on one side and an integral on the other, which differ by a
 //! few per cent. With the inverse of M the layers next to the surface would have different pressures at rest, and the
 //! first layer would slide along a vertical surface at a twentieth of gravity.
 //!
 //! The pass writes two vectors per particle for the forces: xx, yy, zz of B and the coefficient of the shifting; then
-//! xy, xz, yz of B. The shifting fades out near bodies, whose part in its sum is not known: it is zero where a body
-//! fills a twentieth of the kernel.
+//! xy, xz, yz of B. The shifting and R fade out near bodies, whose parts in their sums are not known: they are zero
+//! where a body fills a hundredth of the kernel. At a support of three spacings that includes the second layer, which the
+//! shifting would press on the first.
 //!
 //! The density is advanced first with the old velocities, and the velocities then with the pressure of the new density,
 //! which is symplectic for sound waves. Advancing both from the old state, as explicit Euler does, would amplify every
