@@ -11,6 +11,7 @@ mod attributes;
 mod commands;
 mod console;
 mod exit;
+mod forecast;
 mod human;
 mod interrupt;
 mod lines;

@@ -1,33 +1,19 @@
 //! `splashdown check`: validates a scene and prints derived quantities.
 
-use std::time::{Duration, Instant};
-
 use serde::Serialize;
 use splashdown::check::{BodyWidths, Interpretation, Resolution, interpretations, resolution};
 use splashdown::run::ProgressFn;
 use splashdown::sample::Inventory;
 use splashdown::scene::{Derived, Method, Scene, SceneWarning};
-use splashdown::{
-    Device, Packing, Simulation, SimulationError, check_particles, memory_forecast_of,
-    neighbour_search_forecast,
-};
+use splashdown::{Packing, SimulationError, check_particles, memory_forecast_of, neighbour_search_forecast};
 
 use crate::args::CheckArguments;
 use crate::console::Verbosity;
 use crate::exit::{Exit, Failure};
+use crate::forecast::{Forecast, forecast};
 use crate::lines::Line;
 use crate::progress::Bar;
-use crate::speed::{bench_scene, seconds_per_step};
 use crate::{console, human, scene_file};
-
-/// Duration of the measurement for the expected time.
-const MEASURE: Duration = Duration::from_millis(60);
-
-/// Numbers of particles sufficient to use a CPU and a GPU fully.
-const FEW: u64 = 4096;
-const MANY: u64 = 65_536;
-/// The shortest step of the measured scene in s.
-const SHORTEST_STEP: f32 = 1e-9;
 
 /// The JSON output.
 #[derive(Debug, Serialize)]
@@ -45,7 +31,7 @@ struct Report<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     initial_packing: Option<&'a Packing>,
     memory_forecast: u64,
-    speed: &'a Speed,
+    speed: Speed<'a>,
     /// How the meshes of bodies and fluid are interpreted.
     meshes: &'a [Interpretation],
     /// Lengths of the scene in particle spacings, and the nearest validated cases.
@@ -53,15 +39,28 @@ struct Report<'a> {
     warnings: &'a [SceneWarning],
 }
 
-/// The speed of this machine, measured with a dam break.
+/// The expected wall time on this machine.
 #[derive(Debug, Serialize)]
-struct Speed {
-    #[serde(skip)]
-    on_gpu: bool,
-    device: String,
-    measured_particles: u64,
+struct Speed<'a> {
+    device: &'a str,
     particle_steps_per_second: f64,
+    expected_steps: u64,
     expected_seconds: f64,
+    /// The particles of the trial with a wider spacing, and the part of the scene's duration that it covers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    trial: Option<(u32, f64)>,
+}
+
+impl<'a> From<&'a Forecast> for Speed<'a> {
+    fn from(forecast: &'a Forecast) -> Self {
+        Self {
+            device: &forecast.device,
+            particle_steps_per_second: forecast.rate,
+            expected_steps: forecast.steps,
+            expected_seconds: forecast.seconds,
+            trial: forecast.trial,
+        }
+    }
 }
 
 /// Checks a scene and prints the result.
@@ -92,7 +91,7 @@ fn execute(arguments: &CheckArguments) -> Result<(), Failure> {
     );
     let fits = check_particles(inventory.particles, executor.largest_buffer(), &scene);
     drop(executor);
-    let speed = measure(&scene, &derived, &arguments.device.device)?;
+    let forecast = forecast(&scene, &derived, &resolution, &arguments.device.device)?;
     if arguments.json {
         console::print_json(&Report {
             event: "check",
@@ -104,7 +103,7 @@ fn execute(arguments: &CheckArguments) -> Result<(), Failure> {
             removed: inventory.removed,
             initial_packing: packing.as_ref(),
             memory_forecast: memory.saturating_add(search),
-            speed: &speed,
+            speed: Speed::from(&forecast),
             meshes: &meshes,
             resolution: &resolution,
             warnings: &scene.warnings,
@@ -117,7 +116,7 @@ fn execute(arguments: &CheckArguments) -> Result<(), Failure> {
     let file = arguments.scene.display();
     console::print(format!(
         "{file}: valid\n{}",
-        describe(&scene, &derived, &inventory, [memory, search], &speed)
+        describe(&scene, &derived, &inventory, [memory, search], &forecast)
     ));
     if let Some(packing) = &packing {
         print_packing(packing);
@@ -148,7 +147,7 @@ fn describe(
     derived: &Derived,
     inventory: &Inventory,
     [buffers, search]: [u64; 2],
-    speed: &Speed,
+    forecast: &Forecast,
 ) -> String {
     let fluid = &scene.fluid;
     let size = scene.domain.size();
@@ -176,7 +175,7 @@ fn describe(
             "steps",
             format!(
                 "about {} in {}, {} s",
-                human::count(derived.steps_estimate),
+                human::count(forecast.steps),
                 human::counted(derived.frames.into(), "frame"),
                 scene.duration
             ),
@@ -185,11 +184,10 @@ fn describe(
         (
             "expected time",
             format!(
-                "about {} on {}: estimated from {} particle-steps/s measured with {} particles, without pictures and files",
-                human::duration(speed.expected_seconds),
-                speed.device,
-                human::scaled(speed.particle_steps_per_second).trim_end(),
-                human::count(speed.measured_particles),
+                "about {} on {}, without pictures and files: {}",
+                human::duration(forecast.seconds),
+                forecast.device,
+                basis(forecast),
             ),
         ),
     ];
@@ -211,6 +209,18 @@ fn describe(
         rows.retain(|(name, _)| *name != "sound");
     }
     console::table(&rows)
+}
+
+/// What the expected time is based on.
+fn basis(forecast: &Forecast) -> String {
+    match forecast.trial {
+        Some((particles, part)) => format!(
+            "from a trial of {:.0} % of the scene with {}",
+            (100.0 * part).max(1.0),
+            human::counted(particles.into(), "particle")
+        ),
+        None => "from the expected speed, because a trial with fewer particles failed".to_owned(),
+    }
 }
 
 /// The density of the particles at the start.
@@ -288,40 +298,4 @@ fn particles(inventory: &Inventory, spacing: f32) -> String {
         words += &format!("; {} inside bodies are removed", human::count(inventory.removed));
     }
     words
-}
-
-/// Runs a few steps of a dam break with the scene's solver.
-fn measure(scene: &Scene, derived: &Derived, device: &Device) -> Result<Speed, Failure> {
-    let typical = (derived.mean_particles.ceil() as u64).max(1);
-    let mut speed = measure_with(FEW.min(typical), scene, derived, device)?;
-    if speed.on_gpu && typical > FEW {
-        speed = measure_with(MANY.min(typical), scene, derived, device)?;
-    }
-    Ok(speed)
-}
-
-fn measure_with(particles: u64, scene: &Scene, derived: &Derived, device: &Device) -> Result<Speed, Failure> {
-    let mut small = bench_scene(particles as u32)?;
-    small.solver = scene.solver.clone();
-    // The default follows the size of the domain, and a GPU encodes all iterations.
-    small.solver.max_iterations = Some(Derived::max_iterations(scene));
-    // The dam break moves faster than some scenes, and must not end at their shortest step.
-    small.solver.min_dt = SHORTEST_STEP;
-    let mut simulation = Simulation::new(&small, device)?;
-    // The first steps also build pipelines and touch memory for the first time.
-    seconds_per_step(&mut simulation, 2)?;
-    let start = Instant::now();
-    let mut best = f64::INFINITY;
-    while best.is_infinite() || start.elapsed() < MEASURE {
-        best = best.min(seconds_per_step(&mut simulation, 4)?.0);
-    }
-    let measured = u64::from(simulation.stats().particles);
-    let rate = measured as f64 / best;
-    Ok(Speed {
-        on_gpu: simulation.executor().gpu().is_some(),
-        device: simulation.device_name(),
-        measured_particles: measured,
-        particle_steps_per_second: rate,
-        expected_seconds: derived.mean_particles * derived.steps_estimate as f64 / rate,
-    })
 }

@@ -68,7 +68,7 @@ fn check_prints_derived_quantities() -> Outcome {
     let place = Place::new()?;
     let words = place.splashdown(&["check", "small.toml", "--device", "cpu"]).output()?;
     assert!(words.status.success(), "{}", stderr(&words));
-    for word in ["valid", "216", "particle mass", "time step", "memory", "expected time", "estimate"] {
+    for word in ["valid", "216", "particle mass", "time step", "memory", "expected time", "from a trial of"] {
         assert!(stdout(&words).contains(word), "{word} is missing in:\n{}", stdout(&words));
     }
     let json = place.splashdown(&["check", "small.toml", "--device", "cpu", "--json"]).output()?;
@@ -83,6 +83,45 @@ fn check_prints_derived_quantities() -> Outcome {
     assert!(report["speed"]["expected_seconds"].as_f64().is_some_and(|seconds| seconds > 0.0));
     assert_eq!(report["resolution"]["depth"].as_f64().map(f64::round), Some(6.0), "{report}");
     assert!(stdout(&words).contains("validated: standing wave, depth 20 spacings (here 6)"));
+    Ok(())
+}
+
+/// A block that collapses in a tank, with these lines of the fluid and the solver.
+fn collapsing(fluid: &str, solver: &str) -> String {
+    format!(
+        "[scene]\nname = \"collapse\"\nduration = 0.3\n[domain]\nmin = [0, 0, 0]\nmax = [1, 0.6, 0.5]\nopen = [\"y_max\"]\n\
+         [fluid]\nparticle_spacing = 0.022\n{fluid}[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5, 0.4, 0.5]\n[solver]\n{solver}\n\
+         [surface]\nenabled = false\n"
+    )
+}
+
+#[test]
+fn check_predicts_the_steps_of_a_run() -> Outcome {
+    let place = Place::new()?;
+    let scenes = [
+        ("water", "", "method = \"dfsph\""),
+        ("honey", "viscosity = 0.1\n", "method = \"dfsph\""),
+        ("explicit", "", "method = \"wcsph\""),
+    ];
+    let mut estimates = Vec::new();
+    for (name, fluid, solver) in scenes {
+        let file = format!("{name}.toml");
+        place.write(&file, collapsing(fluid, solver))?;
+        let check = place.splashdown(&["check", &file, "--device", "cpu", "--json"]).output()?;
+        let report: Value = serde_json::from_slice(&check.stdout)?;
+        // The trial has fewer particles than the scene.
+        let fewer = report["speed"]["trial"][0].as_f64().zip(report["particles"].as_f64());
+        assert!(fewer.is_some_and(|(trial, whole)| trial < 0.8 * whole), "{report}");
+        let run = place.splashdown(&["run", &file, "--device", "cpu", "--json", "--no-pictures"]).output()?;
+        let summary: Value = serde_json::from_str(stdout(&run).lines().last().ok_or("no output")?)?;
+        let steps = summary["steps"].as_f64().ok_or("no steps")?;
+        let ratio = |value: &Value| value.as_f64().unwrap_or_default() / steps;
+        let predicted = ratio(&report["speed"]["expected_steps"]);
+        assert!((0.75..1.25).contains(&predicted), "{name}: {predicted} of {steps} steps");
+        estimates.push(ratio(&report["steps_estimate"]));
+    }
+    // Control: the estimate from the expected speed is wrong for the viscous liquid.
+    assert!(estimates[1] > 1.25, "{estimates:?}");
     Ok(())
 }
 
