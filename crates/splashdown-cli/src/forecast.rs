@@ -6,6 +6,7 @@
 
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
 use splashdown::check::Resolution;
 use splashdown::scene::{Derived, Method, Scene};
 use splashdown::{Device, Simulation, SimulationError, Stats, longest_step};
@@ -36,9 +37,16 @@ pub struct Forecast {
     pub seconds: f64,
     /// Particle steps per second at the size of the scene.
     pub rate: f64,
-    /// The particles of the trial and the part of the duration that it covers; `None` if the scene allows no trial: the
-    /// forecast then follows from the expected speed and from a dam break.
-    pub trial: Option<(u32, f64)>,
+    /// `None` if the scene allows no trial: the forecast then follows from the expected speed and from a dam break.
+    pub trial: Option<Trial>,
+}
+
+/// The size of a trial.
+#[derive(Debug, Serialize)]
+pub struct Trial {
+    pub particles: u32,
+    /// The part of the scene's duration that it covers.
+    pub part: f64,
 }
 
 /// Runs the trial.
@@ -77,7 +85,10 @@ pub fn forecast(
         steps: total.round() as u64,
         seconds: particles * total * per_particle,
         rate: 1.0 / per_particle,
-        trial: Some((trial.particles, f64::from(trial.frames) / f64::from(derived.frames))),
+        trial: Some(Trial {
+            particles: trial.particles,
+            part: f64::from(trial.frames) / f64::from(derived.frames),
+        }),
     })
 }
 
@@ -112,7 +123,7 @@ fn coarse(scene: &Scene, ratio: f32) -> Scene {
 }
 
 /// The first frames of a run.
-struct Trial {
+struct Start {
     particles: u32,
     frames: u32,
     /// Per frame.
@@ -123,7 +134,7 @@ struct Trial {
     longest: f32,
 }
 
-fn run(scene: &Scene, device: &Device) -> Result<Trial, SimulationError> {
+fn run(scene: &Scene, device: &Device) -> Result<Start, SimulationError> {
     let mut simulation = Simulation::new(scene, device)?;
     let particles = simulation.stats().particles;
     // The first step also builds pipelines.
@@ -134,7 +145,7 @@ fn run(scene: &Scene, device: &Device) -> Result<Trial, SimulationError> {
         particle_steps += f64::from(frame.particles) * f64::from(frame.steps_in_frame);
         stats.push(frame);
     }
-    Ok(Trial {
+    Ok(Start {
         particles: particles.max(simulation.stats().particles),
         frames: stats.len() as u32,
         stats,
@@ -145,7 +156,7 @@ fn run(scene: &Scene, device: &Device) -> Result<Trial, SimulationError> {
     })
 }
 
-impl Trial {
+impl Start {
     /// The steps of each frame in a scene whose spacing is `ratio` times smaller.
     fn steps(&self, scene: &Scene, derived: &Derived, ratio: f32) -> Vec<f64> {
         let frame = scene.frame_duration();

@@ -10,7 +10,7 @@ use splashdown::{Packing, SimulationError, check_particles, memory_forecast_of, 
 use crate::args::CheckArguments;
 use crate::console::Verbosity;
 use crate::exit::{Exit, Failure};
-use crate::forecast::{Forecast, forecast};
+use crate::forecast::{Forecast, Trial, forecast};
 use crate::lines::Line;
 use crate::progress::Bar;
 use crate::{console, human, scene_file};
@@ -46,9 +46,9 @@ struct Speed<'a> {
     particle_steps_per_second: f64,
     expected_steps: u64,
     expected_seconds: f64,
-    /// The particles of the trial with a wider spacing, and the part of the scene's duration that it covers.
+    /// The trial with a wider spacing; absent if the scene allows none.
     #[serde(skip_serializing_if = "Option::is_none")]
-    trial: Option<(u32, f64)>,
+    trial: Option<&'a Trial>,
 }
 
 impl<'a> From<&'a Forecast> for Speed<'a> {
@@ -58,7 +58,7 @@ impl<'a> From<&'a Forecast> for Speed<'a> {
             particle_steps_per_second: forecast.rate,
             expected_steps: forecast.steps,
             expected_seconds: forecast.seconds,
-            trial: forecast.trial,
+            trial: forecast.trial.as_ref(),
         }
     }
 }
@@ -213,13 +213,13 @@ fn describe(
 
 /// What the expected time is based on.
 fn basis(forecast: &Forecast) -> String {
-    match forecast.trial {
-        Some((particles, part)) => format!(
+    match &forecast.trial {
+        Some(trial) => format!(
             "from a trial of {:.0} % of the scene with {}",
-            (100.0 * part).max(1.0),
-            human::counted(particles.into(), "particle")
+            (100.0 * trial.part).max(1.0),
+            human::counted(trial.particles.into(), "particle")
         ),
-        None => "from the expected speed, because a trial with fewer particles failed".to_owned(),
+        None => "from the expected speed, because the scene allows no trial with fewer particles".to_owned(),
     }
 }
 

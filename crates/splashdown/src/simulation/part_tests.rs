@@ -63,6 +63,7 @@ fn checkpoint(kernel: KernelKind) -> Checkpoint {
     particles.ids = (0..particles.len() as u32).collect();
     let executor = splashdown_gpu::CpuExecutor::new().into();
     let mut simulation = Simulation::with_particles(&scene, executor, &particles).unwrap();
+    // At 0.02 s the reactions on the two executors differ by 1.1 %, with pressures that are still near zero.
     simulation.advance(0.03).unwrap();
     let text = SCENE.replace("[solver]", &format!("[solver]\nkernel = \"{kernel}\""));
     simulation.checkpoint(&text).unwrap()
