@@ -206,10 +206,22 @@ pub(crate) fn is_packed_around_bodies(scene: &Scene) -> bool {
         && samplers().iter().all(|sampler| sampler.counts().1 == 0)
 }
 
+/// Whether all particles come from files.
+fn has_files_only(fluid: &Fluid) -> bool {
+    fluid.blocks.is_empty() && fluid.meshes.is_empty() && !fluid.files.is_empty()
+}
+
 /// Removes the particles inside or too near to a body, renumbers the ids from 0 and returns the number
 /// removed.
 pub(crate) fn remove_inside(scene: &Scene, particles: &mut Particles, bodies: &[LoadedBody]) -> u32 {
-    let clearance = if is_packed_around_bodies(scene) { CUT } else { clearance_of(scene) };
+    let clearance = if is_packed_around_bodies(scene) {
+        CUT
+    } else if has_files_only(&scene.fluid) {
+        // In a frame of an earlier run, fluid under pressure is nearer to bodies than a block would start.
+        (0.0, Vec3::ZERO)
+    } else {
+        clearance_of(scene)
+    };
     let removed = retain_outside(scene, particles, &bodies.iter().collect::<Vec<_>>(), clearance);
     if removed > 0 {
         particles.ids = (0..particles.positions.len() as u32).collect();

@@ -13,6 +13,9 @@ use crate::pool::{self, FORMS, SIZE, SPACING};
 /// Gaps in spacings.
 const GAPS: [f32; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
 
+/// Edge length of a cube in m.
+const CUBE: f32 = 0.2;
+
 /// The bodies of a case, with a gap in m.
 type Bodies = fn(f32) -> Vec<Mesh>;
 
@@ -33,7 +36,7 @@ const CASES: [(&str, Bodies); 9] = [
 ];
 
 fn cube(low: Vec3) -> Mesh {
-    cuboid(low, low + 4.0 * SPACING)
+    cuboid(low, low + CUBE)
 }
 
 /// Whether the test command runs this form.
@@ -48,7 +51,9 @@ const SOUND: f32 = 0.02;
 /// body. Where the bodies leave the fluid a box, it must also be still after a second. Other submerged bodies cause
 /// currents at their edges, at walls and away from them (docs/validation.md), which are reported.
 fn check(selected: impl Fn(&str, f32, &str, BoundaryKind) -> bool) {
-    let word = std::env::var("STARTS").unwrap_or_default();
+    let [word, only, spacing] =
+        ["STARTS", "STARTS_FORM", "STARTS_SPACING"].map(|name| std::env::var(name).unwrap_or_default());
+    let spacing = if spacing.is_empty() { SPACING } else { spacing.parse().expect("STARTS_SPACING in m") };
     let (mut count, mut moving, mut failures) = (0, 0, Vec::new());
     for (case, bodies) in CASES {
         if !case.contains(&word) {
@@ -58,11 +63,11 @@ fn check(selected: impl Fn(&str, f32, &str, BoundaryKind) -> bool) {
             for (form, text) in FORMS {
                 for boundary in [BoundaryKind::Map, BoundaryKind::Particles] {
                     let is_repeated = case == "none" && (gap > 0.0 || boundary == BoundaryKind::Particles);
-                    if is_repeated || !selected(case, gap, form, boundary) {
+                    if is_repeated || !form.contains(&only) || !selected(case, gap, form, boundary) {
                         continue;
                     }
-                    let mut scene = pool::pool(text);
-                    for (k, mesh) in bodies(gap * SPACING).iter().enumerate() {
+                    let mut scene = pool::pool(text, spacing);
+                    for (k, mesh) in bodies(gap * spacing).iter().enumerate() {
                         scene.bodies.push(pool::body(&format!("{case}{k}"), mesh, boundary));
                     }
                     let outcome = pool::run(&scene);
@@ -136,7 +141,7 @@ fn a_body_between_the_layers_of_a_block_displaces_its_volume() {
     // Faces at a quarter and three quarters of a spacing, and on layers of particles.
     for shift in [0.25, 0.4, 0.5] {
         let low = Vec3::new(0.2, 0.1, 0.15) + shift * SPACING;
-        let mut scene = pool::pool("method = \"dfsph\"\n");
+        let mut scene = pool::pool("method = \"dfsph\"\n", SPACING);
         let lattice = sample::particles(&scene).unwrap().positions;
         scene.bodies.push(pool::body("cut", &cube(low), BoundaryKind::Map));
         let packed = Simulation::new(&scene, &Device::Cpu).unwrap().particles().unwrap().positions;
@@ -144,10 +149,40 @@ fn a_body_between_the_layers_of_a_block_displaces_its_volume() {
         assert!((56..=72).contains(&displaced), "{shift}: the cube of 64 displaces {displaced}");
         // Control: without the particles closer than half a spacing the cube displaces more.
         let near = |p: &&[f32; 3]| {
-            let beyond = (Vec3::from(**p) - low - 2.0 * SPACING).abs() - 2.0 * SPACING;
+            let beyond = (Vec3::from(**p) - low - 0.5 * CUBE).abs() - 0.5 * CUBE;
             beyond.max_element() < 0.49 * SPACING
         };
         let near = lattice.iter().filter(near).count();
         assert!(near > 72, "{shift}: {near}");
+    }
+}
+
+#[test]
+fn a_frame_of_a_run_around_a_body_can_be_imported() {
+    let low = Vec3::new(0.2, 0.0, 0.15);
+    for (form, text) in [FORMS[3], FORMS[0]] {
+        let mut scene = pool::pool(text, SPACING);
+        let mesh = cube(low);
+        scene.bodies.push(pool::body("earlier", &mesh, BoundaryKind::Map));
+        let mut earlier = Simulation::new(&scene, &Device::Cpu).unwrap();
+        earlier.advance(0.2).unwrap();
+        let frame = earlier.particles().unwrap();
+        let near = |x: &&[f32; 3]| {
+            let beyond = (Vec3::from(**x) - low - 0.5 * CUBE).abs() - 0.5 * CUBE;
+            beyond.max_element() < 0.49 * SPACING
+        };
+        // Control: particles that a block would start without.
+        let near = frame.positions.iter().filter(near).count();
+        assert!(near > 20, "{form}: {near}");
+        let name = format!("frame-{form}.ply");
+        let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+        splashdown_io::write_particles(&folder.join(&name), &frame).unwrap();
+        let fluid = format!("[[fluid.file]]\nfile = \"{name}\"\n");
+        let mut later = pool::pool_of(text, SPACING, &fluid, &folder.join("later.toml"));
+        later.bodies.push(pool::body("later", &mesh, BoundaryKind::Map));
+        let mut later = Simulation::new(&later, &Device::Cpu).unwrap();
+        let imported = later.particles().unwrap();
+        assert_eq!(imported.positions.len(), frame.positions.len(), "{form}");
+        assert!(later.packing().unwrap().density().excess < SOUND, "{form}: {:?}", later.packing());
     }
 }

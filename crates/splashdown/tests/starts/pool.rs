@@ -1,14 +1,14 @@
 //! A small pool of still water, and the measure of its stillness.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
 use splashdown::scene::{Body, BoundaryKind, MeshShape, MeshSource, Motion, Scene, SolidContact, UpAxis};
 use splashdown::{Device, Simulation};
 use splashdown_io::Mesh;
 
-/// Particle spacing in m.
+/// Particle spacing in m of the cases that the tests run.
 pub const SPACING: f32 = 0.05;
 /// Size of the domain and depth of the water in m.
 pub const SIZE: Vec3 = Vec3::new(0.6, 0.8, 0.5);
@@ -22,14 +22,21 @@ pub const FORMS: [(&str, &str); 4] = [
     ("dfsph", "method = \"dfsph\"\n"),
 ];
 
-/// A pool that is open at the top, without bodies.
-pub fn pool(form: &str) -> Scene {
+/// A pool that is open at the top, without bodies. `form` are keys of `[solver]`, and `spacing` is in m.
+pub fn pool(form: &str, spacing: f32) -> Scene {
+    let [x, _, z] = SIZE.to_array();
+    let block = format!("[[fluid.block]]\nposition = [0, 0, 0]\nsize = [{x}, {DEPTH}, {z}]\n");
+    pool_of(form, spacing, &block, Path::new("pool.toml"))
+}
+
+/// A [`pool`] of other fluid, whose files lie beside `path`.
+pub fn pool_of(form: &str, spacing: f32, fluid: &str, path: &Path) -> Scene {
     let [x, y, z] = SIZE.to_array();
     let text = format!(
         "[scene]\nname = \"pool\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [{x}, {y}, {z}]\nopen = [\"y_max\"]\n[solver]\n{form}\
-         [fluid]\nparticle_spacing = {SPACING}\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [{x}, {DEPTH}, {z}]\n"
+         [fluid]\nparticle_spacing = {spacing}\n{fluid}"
     );
-    Scene::parse(&text, "pool").unwrap_or_else(|errors| panic!("{errors}"))
+    Scene::parse_beside(&text, path).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 /// A static body with this mesh, which is written to a temporary file.
