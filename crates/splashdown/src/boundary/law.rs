@@ -35,6 +35,18 @@ pub(crate) fn implicit_rate(k: f32, dt: f32) -> f32 {
     k / (1.0 + k * dt)
 }
 
+/// The change of the relative velocity of fluid and a body, over that of the fluid alone, if a layer of fluid as thick as the
+/// [`CLEARANCE`] is stopped by the whole surface of the body: 1 for a body that does not yield. `coupling` is that of the
+/// [`Body`](crate::bodies::Body).
+///
+/// Each particle stops its own approach within a step and does not know of the others. Without the division by this factor
+/// they push a light body many times as fast as the fluid. It meets the fluid on its other side, and both burst at any length
+/// of the step.
+#[inline(always)]
+pub(crate) fn yielding(params: &Params, coupling: f32) -> f32 {
+    1.0 + CLEARANCE * params.rest_density * params.particle_spacing * coupling
+}
+
 /// The largest speed towards a boundary at this distance, in m/s, that respects the [`CLEARANCE`] after a step.
 #[inline(always)]
 pub(crate) fn contact_speed(params: &Params, distance: f32, dt: f32) -> f32 {

@@ -21,6 +21,10 @@ fn implicit_rate(k: f32, dt: f32) -> f32 {
     return k / (1.0 + k * dt);
 }
 
+fn yielding(coupling: f32) -> f32 {
+    return 1.0 + BOUNDARY_CLEARANCE * params.rest_density * params.particle_spacing * coupling;
+}
+
 fn contact_speed(distance: f32, dt: f32) -> f32 {
     return max(distance - BOUNDARY_CLEARANCE * params.particle_spacing, 0.0) / dt;
 }

@@ -64,7 +64,8 @@ fn contact_acceleration(i: u32, k: u32, v: vec3<f32>) -> vec3<f32> {
     let x = sorted_positions[i].xyz;
     let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
     let slowest = -contact_speed(contact.distance, state.dt);
-    return max(slowest - dot(v - wall, contact.normal), 0.0) / state.dt * contact.normal;
+    let stop = max(slowest - dot(v - wall, contact.normal), 0.0);
+    return stop / (yielding(bodies[b].coupling) * state.dt) * contact.normal;
 }
 
 @compute @workgroup_size(64)

@@ -105,10 +105,6 @@ impl ParticleForces<'_> {
         }
     }
 
-    fn wall_velocity(&self, contact: &Contact) -> Vec3 {
-        self.bodies[contact.body as usize].velocity_at(self.x)
-    }
-
     /// The acceleration by a body.
     fn effect<const FORCES: u32>(&self, k: usize, both: bool) -> Vec3 {
         let (params, contact) = (self.params, &self.contacts[k]);
@@ -135,7 +131,7 @@ impl ParticleForces<'_> {
             return a;
         }
 
-        let v = self.v - self.wall_velocity(contact);
+        let v = self.v - body.velocity_at(self.x);
         let vn = v.dot(n);
         let q = (effective * scale).min(1.0);
         if vn < 0.0 {
@@ -154,8 +150,10 @@ impl ParticleForces<'_> {
     /// The contact acceleration that prevents a particle from entering a body, if `v` is its velocity after this step.
     fn contact_acceleration(&self, k: usize, v: Vec3) -> Vec3 {
         let contact = &self.contacts[k];
+        let body = &self.bodies[contact.body as usize];
         let slowest = -law::contact_speed(self.params, contact.distance, self.dt);
-        let toward = (v - self.wall_velocity(contact)).dot(contact.normal);
-        (slowest - toward).max(0.0) / self.dt * contact.normal
+        let toward = (v - body.velocity_at(self.x)).dot(contact.normal);
+        let yielding = law::yielding(self.params, body.coupling);
+        (slowest - toward).max(0.0) / (yielding * self.dt) * contact.normal
     }
 }

@@ -44,7 +44,9 @@ pub(super) fn pressure_force(buffers: PressureForceBindings<'_>) {
                     a += missing;
                     let v = velocities[i].xyz() + state.dt * a - body.velocity_at(x);
                     let slowest = -law::contact_speed(params, contact.distance, state.dt);
-                    let stop = (slowest - v.dot(contact.normal)).max(0.0) / state.dt * contact.normal;
+                    let yielding = law::yielding(params, body.coupling);
+                    let stop = (slowest - v.dot(contact.normal)).max(0.0) / (yielding * state.dt);
+                    let stop = stop * contact.normal;
                     a += stop;
                     let force = params.particle_mass * (pressure * contact.solid_gradient() - stop - missing);
                     let point = x - contact.distance * contact.normal;

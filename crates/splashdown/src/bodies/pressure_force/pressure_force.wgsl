@@ -30,7 +30,8 @@ fn pressure_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
             let wall = bodies[b].velocity + cross(bodies[b].angular_velocity, x - bodies[b].position);
             let v = sorted_velocities[i].xyz + state.dt * a - wall;
             let slowest = -contact_speed(contact.distance, state.dt);
-            let stop = max(slowest - dot(v, contact.normal), 0.0) / state.dt * contact.normal;
+            let rate = max(slowest - dot(v, contact.normal), 0.0) / (yielding(bodies[b].coupling) * state.dt);
+            let stop = rate * contact.normal;
             a += stop;
             let force = params.particle_mass * (pressure * solid_gradient_of(contact) - stop - missing);
             react(b, x - contact.distance * contact.normal, force);
