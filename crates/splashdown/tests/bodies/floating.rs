@@ -73,7 +73,7 @@ fn a_heavy_body_sinks_to_the_floor_and_comes_to_rest() {
     assert!(state.velocity.length() < 0.05, "{state:?}");
 }
 
-/// Scenes with a body of thin parts, a sixth to a tenth as dense as the fluid, and the largest speed in m/s that the energy of
+/// Scenes with a body of thin parts, a seventeenth and a tenth as dense as the fluid, and the largest speed in m/s that the energy of
 /// the fluid allows. They burst within 0.03 s at 100 m/s and more, at any length of the step, when the particles at a body
 /// stopped their approach without regard to how far it yields.
 const LIGHT: [(&str, f32); 2] = [
