@@ -4,7 +4,7 @@
 
 use std::time::Instant;
 
-use splashdown::boundary::KernelPair;
+use splashdown::boundary::{KernelPair, PlaneFraction};
 use splashdown::solid::{Solid, SolidSettings};
 use splashdown_io::Mesh;
 
@@ -53,7 +53,7 @@ fn main() {
     let settings = SolidSettings {
         cell_size: 0.02,
         support_radius: 0.08,
-        kernels: KernelPair::WendlandC2,
+        fraction: PlaneFraction::of(KernelPair::WendlandC2),
         half_thickness: 0.02,
         shell: None,
         region: None,

@@ -3,7 +3,7 @@
 use splashdown_io::Mesh;
 
 use super::load::{BodyError, cell_size, check_scale, mesh_of};
-use crate::boundary::KernelPair;
+use crate::boundary::{KernelPair, PlaneFraction};
 use crate::scene::{Domain, MeshSource};
 use crate::solid::{self, Solid, SolidKind, SolidSettings};
 
@@ -38,7 +38,7 @@ pub(crate) fn solid_of(
         cell_size: cell_size(solid::bounds(mesh), spacing, 0.0, 0.0),
         // The solid exerts no force, so its nodes need no kernel fractions.
         support_radius: 0.0,
-        kernels: KernelPair::WendlandC2,
+        fraction: PlaneFraction::of(KernelPair::WendlandC2),
         half_thickness: 0.5 * spacing,
         shell,
         region: None,

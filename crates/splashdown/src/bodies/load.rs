@@ -8,7 +8,7 @@ use splashdown_io::{IoError, Mesh};
 
 use super::BodyMesh;
 use super::types::{Body, Contact};
-use crate::boundary::{KernelPair, SolidDistance, closed_bounds};
+use crate::boundary::{KernelPair, PlaneFraction, SolidDistance, closed_bounds};
 use crate::models;
 use crate::scene::{self, BoundaryKind, Hinge, MeshShape, MeshSource, Motion, Script, SolidContact, UpAxis};
 use crate::solid::{self, Placed, Solid, SolidError, SolidKind, SolidSettings, Surroundings};
@@ -241,7 +241,7 @@ fn load_one(
             half_thickness,
         ),
         support_radius: params.support_radius,
-        kernels,
+        fraction: plane_fraction(params, kernels),
         half_thickness,
         shell: body.shell,
         region,
@@ -407,6 +407,16 @@ fn reachable(body: &scene::Body, domain: &scene::Domain, margin: f32) -> Option<
         (low.min(x), high.max(x))
     });
     Some((low - margin, high + margin))
+}
+
+/// The part of the kernel that a plane fills in the maps. With an implicit pressure it is the density of the lattice that would fill
+/// the body.
+fn plane_fraction(params: &Params, kernels: KernelPair) -> PlaneFraction {
+    if params.is_implicit == 1 {
+        PlaneFraction { kernels, stretch: params.solid_stretch, offset: params.solid_offset }
+    } else {
+        PlaneFraction::of(kernels)
+    }
 }
 
 /// Half the thickness in m of an open mesh.

@@ -4,6 +4,7 @@
 //! its gradient is G = -(A(q)/H) n with A = -D'. Both have closed forms.
 
 use crate::kernel::{BLEND_SHARE, CubicSpline, Kernel, Poly6, Spiky, WendlandBlend, WendlandC2};
+use crate::state::Params;
 
 /// The kernels of the density and of the pressure gradient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,19 +143,63 @@ fn spiky(q: f32) -> (f32, f32) {
     (t4 * t * (1.5 - t), 1.5 * t4 * (1.0 + 4.0 * q))
 }
 
-/// Distances from a body, in spacings, from which [`SolidDistance`] is stretched. Nearer particles are in inner edges and corners,
-/// where the effective distance is small; the offset alone is accurate there.
-pub const STRETCHED_FROM: f32 = 0.25;
+/// The part D(q) of a kernel that a plane wall fills at the distance d, with q = (stretch d + offset) / H, and the kernel for
+/// which this holds.
+///
+/// The kernel with D'' = 2 pi q W(q) fills D; the one that fills D at a stretched distance is W(q) q / r, times the square of the
+/// stretch, with q = stretch r + offset. With it, edges and corners follow from the integral over the solid as planes do: where two
+/// planes meet at right angles, they fill 1 - (1 - D1) (1 - D2) within 1 % of the rest density.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneFraction {
+    /// The kernels of the fluid.
+    pub kernels: KernelPair,
+    /// Factor of the distance.
+    pub stretch: f32,
+    /// Offset of the distance in m.
+    pub offset: f32,
+}
+
+impl PlaneFraction {
+    /// The fluid's own kernel.
+    pub fn of(kernels: KernelPair) -> Self {
+        Self { kernels, stretch: 1.0, offset: 0.0 }
+    }
+
+    /// The part of the kernel that a plane at this distance fills; negative distances are behind the plane. In m.
+    pub fn at(self, distance: f32, support: f32) -> f32 {
+        let q = (self.stretch * distance + self.offset) / support;
+        let d = if q.abs() < 1.0 { self.kernels.gradient(q.abs()).0 } else { 0.0 };
+        if q < 0.0 { 1.0 - d } else { d }
+    }
+
+    /// The distance in m of the plane that fills this part.
+    pub fn distance(self, part: f32, support: f32) -> f32 {
+        // D is accurate for small values but 1 - D loses digits, so parts above one half use the complement.
+        let (small, sign) = if part > 0.5 { (1.0 - part, -1.0) } else { (part, 1.0) };
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            if self.kernels.gradient(middle).0 > small { low = middle } else { high = middle }
+        }
+        (sign * support * 0.5 * (low + high) - self.offset) / self.stretch
+    }
+
+    /// The kernel at this distance from its centre in m, but for a factor.
+    pub fn weight(self, r: f32, support: f32) -> f32 {
+        let q = (self.stretch * r + self.offset) / support;
+        if q > 0.0 && q < 1.0 { self.kernels.w_gradient(q) * q * support / r } else { 0.0 }
+    }
+}
 
 /// The distance of the plane wall whose integrals stand for the lattice of particles that would fill a body. At a distance d
-/// from the body it is e = d, plus the part of d beyond [`STRETCHED_FROM`] times `stretch - 1`. The density is that of D at
+/// from the body it is e = d, plus the part of d beyond [`Params::stretched_from`] times `stretch - 1`. The density is that of D at
 /// e + `offset`, and its gradient that of A at e + `slope_offset` times the derivative of e.
 ///
 /// The integrals assume a continuum, which a lattice is not. At half a spacing and with Wendland C2 within two spacings, the
 /// body fills 5 % more of the density than a lattice, and the gradient is that of a lattice within 3 %.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidDistance {
-    /// Factor of the distance beyond [`STRETCHED_FROM`].
+    /// Factor of the distance beyond [`Params::stretched_from`].
     pub stretch: f32,
     /// Offset of the distance for the density, in spacings.
     pub offset: f32,
@@ -192,7 +237,7 @@ impl SolidDistance {
             if between > stretch { low = stretch } else { high = stretch }
         }
         let stretch = 0.5 * (low + high);
-        let stretched = 0.5 + (stretch - 1.0) * (0.5 - STRETCHED_FROM);
+        let stretched = 0.5 + (stretch - 1.0) * (0.5 - Params::STRETCHED_FROM);
         Self {
             stretch,
             offset: q_of_density(kernels, missing) * support_ratio - stretched,
@@ -209,8 +254,7 @@ impl SolidDistance {
         let q = q_of_density(kernels, missing);
         let steepness = kernels.density(q).1;
         let stretch = gradient / steepness;
-        let stretched = 0.5 + (stretch - 1.0) * (0.5 - STRETCHED_FROM);
-        let offset = (q + Self::MARGIN * missing / steepness) * support_ratio - stretched;
+        let offset = (q + Self::MARGIN * missing / steepness) * support_ratio - 0.5 * stretch;
         Self { stretch, offset, slope_offset: offset }
     }
 }

@@ -20,7 +20,7 @@ pub(crate) mod law;
 pub mod part;
 mod wall_friction;
 
-pub use half_space::{KernelPair, STRETCHED_FROM, SolidDistance, WallKernel};
+pub use half_space::{KernelPair, PlaneFraction, SolidDistance, WallKernel};
 pub(crate) use images::{Images, Reflection, closed_bounds};
 pub(crate) use wall_friction::wall_friction;
 

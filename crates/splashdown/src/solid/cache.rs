@@ -8,9 +8,10 @@ use splashdown_io::Mesh;
 
 use super::field::DistanceField;
 use super::{RepairReport, SolidSettings, Surroundings};
+use crate::boundary::PlaneFraction;
 
 /// Version of the file contents. Increase it when the same inputs give a different solid.
-const VERSION: u32 = 3;
+const VERSION: u32 = 5;
 const MAGIC: &[u8; 8] = b"SDSOLID3";
 
 /// The default cache folder of solids: `splashdown/solids` in the user's cache folder, if there is one.
@@ -39,7 +40,9 @@ pub(super) fn file(
     if let Some((low, high)) = settings.region {
         hash.add(bytemuck::cast_slice(&[low, high]));
     }
-    hash.add(&settings.kernels.id().to_le_bytes());
+    let PlaneFraction { kernels, stretch, offset } = settings.fraction;
+    hash.add(&kernels.id().to_le_bytes());
+    hash.add(bytemuck::cast_slice(&[stretch, offset]));
     hash.add(&[match settings.shell {
         None => 0,
         Some(false) => 1,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::bvh::Bvh;
 use super::surroundings::{Surroundings, filled};
-use crate::boundary::KernelPair;
+use crate::boundary::PlaneFraction;
 
 /// Distances on the nodes of a grid around a solid, in the frame of its mesh.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,8 +16,9 @@ pub struct DistanceField {
     pub cell_size: f32,
     /// Number of nodes along each axis.
     pub nodes: [u32; 3],
-    /// Per node, x fastest: the signed distance in m, negative inside; and the effective distance in m, which
-    /// is the distance of the plane wall that fills the same fraction of the kernel.
+    /// Per node, x fastest: the signed distance in m, negative inside; and the effective distance in m, which is the distance of
+    /// the plane wall that fills the same fraction of the kernel. The first is interpolated linearly, the second by a quadratic
+    /// B-spline.
     pub values: Vec<Vec2>,
 }
 
@@ -126,16 +127,16 @@ impl DistanceField {
         slab
     }
 
-    /// Computes the effective distances: H q, where D(q) is the fraction of the kernel that the solid fills.
+    /// Computes the effective distances: those of the plane that fills the same fraction of the kernel.
     ///
-    /// The fraction is a quadrature over the points of the kernel's support, each weighted with the part of
+    /// The fraction D is that of `fraction`, by a quadrature over the points of the kernel's support, each weighted with the part of
     /// its cell that is inside. It is scaled by the ratio of the exact value and the quadrature for a plane
     /// wall at the same distance. The result is exact for a plane, and quadrature errors cancel for small
     /// fractions.
     pub(super) fn fill_effective(
         &mut self,
         support_radius: f32,
-        kernels: KernelPair,
+        fraction: PlaneFraction,
         surroundings: Option<&Surroundings<'_>>,
         progress: &(dyn Fn(f32) + Sync),
     ) {
@@ -147,14 +148,15 @@ impl DistanceField {
                 for x in axis() {
                     let r = Vec3::new(x, y, z);
                     if r.length() < 1.0 {
-                        ball.push((r * support_radius, kernels.w_gradient(r.length())));
+                        let r = r * support_radius;
+                        ball.push((r, fraction.weight(r.length(), support_radius)));
                     }
                 }
             }
         }
         let total: f32 = ball.iter().map(|(_, w)| w).sum();
         ball.iter_mut().for_each(|(_, w)| *w /= total);
-        let quadrature = Quadrature { support: support_radius, kernels, ball, size: step * support_radius };
+        let quadrature = Quadrature { support: support_radius, fraction, ball, size: step * support_radius };
         let plane = (self.nodes[0] * self.nodes[1]) as usize;
         let slices = self.nodes[2];
         let effective: Vec<Vec<f32>> = (0..slices)
@@ -194,7 +196,7 @@ impl DistanceField {
         quadrature: &Quadrature,
         surroundings: Option<&Surroundings<'_>>,
     ) -> f32 {
-        let &Quadrature { support, kernels, ref ball, size } = quadrature;
+        let &Quadrature { support, fraction, ref ball, size } = quadrature;
         // The gradient vanishes in the middle of a wall or slot. A plane of any orientation is a valid
         // reference there.
         let normal = self.slope(x).normalize_or(Vec3::X);
@@ -209,14 +211,14 @@ impl DistanceField {
         if plane <= 1e-7 {
             return phi;
         }
-        let exact = wall_fraction(kernels, phi / support);
+        let exact = fraction.at(phi, support);
         // Above one half the complement is the small quantity, so the ratio is applied to it.
-        let kernel_fraction = if exact > 0.5 {
+        let part = if exact > 0.5 {
             1.0 - (1.0 - exact) * ((1.0 - solid) / (1.0 - plane).max(1e-7))
         } else {
             exact * solid / plane
         };
-        support * inverse_wall_fraction(kernels, kernel_fraction.clamp(0.0, 1.0))
+        fraction.distance(part.clamp(0.0, 1.0), support)
     }
 
     /// The unit normal of the surface at a point of the mesh's frame, or zero.
@@ -260,29 +262,9 @@ impl DistanceField {
 struct Quadrature {
     /// The support radius in m.
     support: f32,
-    kernels: KernelPair,
+    fraction: PlaneFraction,
     /// Points relative to the centre in m, with weights that add up to 1.
     ball: Vec<(Vec3, f32)>,
     /// Distance between the points in m.
     size: f32,
-}
-
-/// The kernel fraction D(q) of a plane wall for signed q: 1 - D(-q) inside the wall.
-fn wall_fraction(kernels: KernelPair, q: f32) -> f32 {
-    let d = if q.abs() < 1.0 { kernels.gradient(q.abs()).0 } else { 0.0 };
-    if q < 0.0 { 1.0 - d } else { d }
-}
-
-/// The inverse of [`wall_fraction`], by bisection.
-fn inverse_wall_fraction(kernels: KernelPair, kernel_fraction: f32) -> f32 {
-    // D is accurate for small values but 1 - D loses digits, so fractions above one half use the complement.
-    if kernel_fraction > 0.5 {
-        return -inverse_wall_fraction(kernels, 1.0 - kernel_fraction);
-    }
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..30 {
-        let middle = 0.5 * (low + high);
-        if wall_fraction(kernels, middle) > kernel_fraction { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
 }

@@ -19,6 +19,7 @@ mod mass;
 mod openness;
 mod repair;
 mod sample;
+pub(crate) mod spline;
 mod surroundings;
 mod widths;
 
@@ -35,7 +36,7 @@ use std::path::PathBuf;
 use glam::{Quat, Vec3};
 use splashdown_io::Mesh;
 
-use crate::boundary::KernelPair;
+use crate::boundary::PlaneFraction;
 use bvh::Bvh;
 
 /// Parameters for building a solid.
@@ -45,8 +46,8 @@ pub struct SolidSettings {
     pub cell_size: f32,
     /// The fluid's support radius in m.
     pub support_radius: f32,
-    /// The fluid's kernels.
-    pub kernels: KernelPair,
+    /// The part of the kernel that a plane fills.
+    pub fraction: PlaneFraction,
     /// Half the thickness of a shell in m.
     pub half_thickness: f32,
     /// Whether the mesh is a shell; `None` decides by the size of its holes.
@@ -260,7 +261,7 @@ fn make(
     if !fins.is_empty() {
         field.add_sheets(&Bvh::new(corners(fins)), settings.half_thickness);
     }
-    field.fill_effective(settings.support_radius, settings.kernels, surroundings, progress);
+    field.fill_effective(settings.support_radius, settings.fraction, surroundings, progress);
     Ok((mesh, report, field))
 }
 

@@ -101,7 +101,7 @@ gpu_struct! {
         /// Factor of the density that the implicit pressure adds at the free surface; see
         /// [`residual`](crate::passes::implicit::residual).
         surface_completion: f32,
-        /// Factor of the distance to a body beyond [`STRETCHED_FROM`](crate::boundary::STRETCHED_FROM).
+        /// Factor of the distance to a body beyond [`stretched_from`](Self::stretched_from).
         solid_stretch: f32,
         /// Offset of the distance to a body for the gradient of the density, in metres.
         slope_offset: f32,
@@ -113,6 +113,16 @@ gpu_struct! {
 }
 
 impl Params {
+    /// [`stretched_from`](Self::stretched_from) of explicit schemes, in spacings. Nearer particles are in inner edges and corners,
+    /// where the effective distance is small; the offset alone is accurate there.
+    pub const STRETCHED_FROM: f32 = 0.25;
+
+    /// The distance from a body in m from which it is stretched; see [`SolidDistance`](crate::boundary::SolidDistance). The maps of
+    /// an implicit scheme describe edges with the stretched kernel, so that it is zero there.
+    pub fn stretched_from(&self) -> f32 {
+        if self.is_implicit == 1 { 0.0 } else { Self::STRETCHED_FROM * self.particle_spacing }
+    }
+
     /// The length of the next step, for the largest stable step and the remaining time of the frame.
     ///
     /// With an implicit pressure the remaining time is divided evenly, because a step of another length than the last

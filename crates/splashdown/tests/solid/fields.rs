@@ -1,5 +1,5 @@
 use glam::{UVec3, Vec3};
-use splashdown::boundary::KernelPair;
+use splashdown::boundary::{KernelPair, PlaneFraction};
 use splashdown::models;
 use splashdown::solid::{Solid, SolidError, SolidKind, SolidSettings};
 use splashdown_io::Mesh;
@@ -8,7 +8,7 @@ fn settings(cell_size: f32, support_radius: f32) -> SolidSettings {
     SolidSettings {
         cell_size,
         support_radius,
-        kernels: KernelPair::WendlandC2,
+        fraction: PlaneFraction::of(KernelPair::WendlandC2),
         half_thickness: cell_size,
         shell: None,
         region: None,

@@ -2,12 +2,12 @@
 
 use glam::{UVec3, Vec3};
 use proptest::prelude::*;
-use splashdown::boundary::KernelPair;
+use splashdown::boundary::{KernelPair, PlaneFraction};
 use splashdown::models;
 use splashdown::solid::{Solid, SolidError, SolidSettings};
 use splashdown_io::Mesh;
 
-const KERNELS: KernelPair = KernelPair::WendlandC2;
+const FRACTION: PlaneFraction = PlaneFraction { kernels: KernelPair::WendlandC2, stretch: 1.0, offset: 0.0 };
 /// A power of two, so that nodes lie exactly on the middle of walls and slots, where the distance has no gradient.
 const CELL: f32 = 0.0625;
 const SUPPORT: f32 = 0.25;
@@ -19,7 +19,7 @@ fn settings() -> SolidSettings {
     SolidSettings {
         cell_size: CELL,
         support_radius: SUPPORT,
-        kernels: KERNELS,
+        fraction: FRACTION,
         half_thickness: CELL,
         shell: None,
         region: None,
@@ -48,7 +48,7 @@ fn joined(a: &Mesh, b: &Mesh) -> Mesh {
 /// The kernel integral D(q) on both sides of a wall.
 fn share(distance: f32) -> f32 {
     let q = (distance / SUPPORT).clamp(-1.0, 1.0);
-    let d = KERNELS.gradient(q.abs()).0;
+    let d = FRACTION.kernels.gradient(q.abs()).0;
     if q < 0.0 { 1.0 - d } else { d }
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use glam::{UVec3, Vec3};
-use splashdown::boundary::KernelPair;
+use splashdown::boundary::{KernelPair, PlaneFraction};
 use splashdown::models;
 use splashdown::solid::{Solid, SolidKind, SolidSettings};
 use splashdown_io::Mesh;
@@ -26,7 +26,7 @@ fn build(mesh: &Mesh, cells: f32) -> Solid {
     let settings = SolidSettings {
         cell_size,
         support_radius: 4.0 * cell_size,
-        kernels: KernelPair::WendlandC2,
+        fraction: PlaneFraction::of(KernelPair::WendlandC2),
         half_thickness: cell_size,
         shell: None,
         region: None,

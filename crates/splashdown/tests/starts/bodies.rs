@@ -1,7 +1,7 @@
 //! Walls and bodies combined: flush, overlapping, or with gaps of up to two spacings.
 
 use glam::{Quat, Vec3};
-use splashdown::boundary::KernelPair;
+use splashdown::boundary::{KernelPair, PlaneFraction};
 use splashdown::scene::BoundaryKind;
 use splashdown::solid::{Solid, SolidSettings, Surroundings};
 use splashdown::{Device, Simulation, sample};
@@ -108,7 +108,7 @@ fn a_tank_mesh_at_the_sides_of_the_domain_does_not_count_twice() {
     let settings = SolidSettings {
         cell_size: 0.5 * SPACING,
         support_radius: 2.0 * SPACING,
-        kernels: KernelPair::WendlandC2,
+        fraction: PlaneFraction::of(KernelPair::WendlandC2),
         half_thickness: 0.5 * SPACING,
         shell: None,
         region: None,
@@ -129,7 +129,7 @@ fn a_tank_mesh_at_the_sides_of_the_domain_does_not_count_twice() {
         let at = ((Vec3::new(0.3, 0.5 * SPACING, 0.25) - field.min) / field.cell_size).round().as_uvec3();
         let [nx, ny, _] = field.nodes;
         let effective = field.values[((at.z * ny + at.y) * nx + at.x) as usize].y;
-        settings.kernels.density((effective / settings.support_radius).clamp(0.0, 1.0)).0
+        settings.fraction.kernels.density((effective / settings.support_radius).clamp(0.0, 1.0)).0
     };
     assert!(fraction(&within) < 1e-4, "{}", fraction(&within));
     // Control: without the sides the floor of the tub fills the kernel below.

@@ -15,8 +15,8 @@ fn no_contact() -> Contact {
 
 // The distance of SolidDistance (boundary/half_space.rs) without its offsets, and its derivative.
 fn stretched_distance(distance: f32) -> vec2<f32> {
-    // STRETCHED_FROM of boundary/half_space.rs.
-    let beyond = distance - 0.25 * params.particle_spacing;
+    // `stretched_from` of state/params.rs.
+    let beyond = distance - select(0.25 * params.particle_spacing, 0.0, params.is_implicit == 1u);
     if (beyond > 0.0) {
         return vec2(distance + (params.solid_stretch - 1.0) * beyond, params.solid_stretch);
     }
@@ -123,15 +123,15 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
     if (!is_in_map(b, y)) {
         return no_contact();
     }
-    let field = field_at(b, y);
+    let nearest = distance_at(b, y);
     let support = params.support_radius;
-    if (min(field.distance, field.effective) >= support) {
+    if (nearest.w >= support) {
         return no_contact();
     }
     var contact = no_contact();
     contact.body = b;
-    contact.distance = field.distance;
-    contact.normal = turned(orientation, field.distance_gradient / max(length(field.distance_gradient), 1e-6));
+    contact.distance = nearest.w;
+    contact.normal = turned(orientation, nearest.xyz / max(length(nearest.xyz), 1e-6));
     if (bodies[b].way == BODY_PARTICLES) {
         let sum = sampled(b, y);
         contact.kernel_fraction = min(sum.w, 1.0);
@@ -139,11 +139,12 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
         contact.slope = turned(orientation, sum.xyz);
         contact.effective = support * q_of_fraction(contact.kernel_fraction);
     } else {
-        let distance = stretched_distance(field.effective);
+        let effective = effective_at(b, y);
+        let distance = stretched_distance(effective.w);
         let slope = distance.y * plane_through((distance.x + params.slope_offset) / support).y;
-        contact.kernel_fraction = plane_through(field.effective / support).x;
-        contact.slope = turned(orientation, slope / support * field.effective_gradient);
-        contact.effective = field.effective;
+        contact.kernel_fraction = plane_through(effective.w / support).x;
+        contact.slope = turned(orientation, slope / support * effective.xyz);
+        contact.effective = effective.w;
         contact.density = density_through((distance.x + params.solid_offset) / support);
     }
     return contact;

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use super::BoundaryLookupBindings;
 use crate::bodies::field::{self, Interior};
 use crate::bodies::types::{Body, Contact};
-use crate::boundary::{Images, KernelPair, STRETCHED_FROM, WallKernel};
+use crate::boundary::{Images, KernelPair, WallKernel};
 use crate::kernel::Kernel;
 use crate::state::{Params, StepCounters};
 
@@ -231,14 +231,9 @@ impl Around<'_> {
         let rotation = body.rotation();
         let y = rotation.conjugate() * away + body.center;
         let support = params.support_radius;
-        let Some(field) = field::at(body, maps, y, support) else { return NO_CONTACT };
-        let length = field.distance_gradient.length().max(1e-6);
-        let mut contact = Contact {
-            body: b as u32,
-            distance: field.distance,
-            normal: rotation * (field.distance_gradient / length),
-            ..NO_CONTACT
-        };
+        let Some((distance, normal)) = field::distance_at(body, maps, y, support) else { return NO_CONTACT };
+        let normal = rotation * (normal / normal.length().max(1e-6));
+        let mut contact = Contact { body: b as u32, distance, normal, ..NO_CONTACT };
         if body.way == Body::PARTICLES {
             let sum = field::sampled::<K>(body, maps, y, support, interior);
             contact.kernel_fraction = sum.w.min(1.0);
@@ -246,11 +241,12 @@ impl Around<'_> {
             contact.slope = rotation * sum.xyz();
             contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
         } else {
-            let (stretched, steepness) = stretched_distance(params, field.effective);
+            let (effective, gradient) = field::effective_at(body, maps, y);
+            let (stretched, steepness) = stretched_distance(params, effective);
             let (_, slope) = plane_through(K::WALLS, (stretched + params.slope_offset) / support);
-            contact.kernel_fraction = plane_through(K::WALLS, field.effective / support).0;
-            contact.slope = rotation * (steepness * slope / support * field.effective_gradient);
-            contact.effective = field.effective;
+            contact.kernel_fraction = plane_through(K::WALLS, effective / support).0;
+            contact.slope = rotation * (steepness * slope / support * gradient);
+            contact.effective = effective;
             contact.density = density_through(K::WALLS, (stretched + params.solid_offset) / support);
         }
         contact
@@ -260,7 +256,7 @@ impl Around<'_> {
 /// The distance of [`SolidDistance`](crate::boundary::SolidDistance) without its offsets, and its derivative.
 #[inline]
 fn stretched_distance(params: &Params, distance: f32) -> (f32, f32) {
-    let beyond = distance - STRETCHED_FROM * params.particle_spacing;
+    let beyond = distance - params.stretched_from();
     if beyond > 0.0 {
         (distance + (params.solid_stretch - 1.0) * beyond, params.solid_stretch)
     } else {

@@ -107,7 +107,7 @@ fn the_distance_for_two_layers_has_their_gradients() {
     ] {
         let error = |solid: SolidDistance, distance: f32| {
             let [_, gradient] = half_lattice_sums(kernels, ratio, distance.into());
-            let stretched = distance + (solid.stretch - 1.0) * (distance - STRETCHED_FROM);
+            let stretched = distance + (solid.stretch - 1.0) * (distance - solid.stretched_from);
             let q = (stretched + solid.slope_offset) / ratio;
             let slope = if q < 1.0 { solid.stretch * kernels.density(q).1 } else { 0.0 };
             (slope - gradient).abs()
