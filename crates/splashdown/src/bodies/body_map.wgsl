@@ -1,5 +1,13 @@
 // Interpolation of the maps of bodies; see field.rs. The pass binds `bodies` and `maps`.
 
+// The map at a point of the mesh's frame: distance, effective distance and their gradients.
+struct Field {
+    distance: f32,
+    effective: f32,
+    distance_gradient: vec3<f32>,
+    effective_gradient: vec3<f32>,
+}
+
 // A point of the world in the frame of the mesh of a body.
 fn body_point(b: u32, x: vec3<f32>) -> vec3<f32> {
     return turned_back(bodies[b].orientation, x - bodies[b].position) + bodies[b].center;
@@ -12,8 +20,7 @@ fn is_in_map(b: u32, y: vec3<f32>) -> bool {
     return all(y > bodies[b].field_min) && all(y < high);
 }
 
-// The signed distance at a point of the mesh's frame inside the map (w), and its gradient (xyz), by linear interpolation.
-fn distance_at(b: u32, y: vec3<f32>) -> vec4<f32> {
+fn field_at(b: u32, y: vec3<f32>) -> Field {
     let size = vec3(bodies[b].nodes_x, bodies[b].nodes_y, bodies[b].nodes_z);
     let inverse = 1.0 / bodies[b].cell_size;
     let at = (y - bodies[b].field_min) * inverse;
@@ -22,26 +29,28 @@ fn distance_at(b: u32, y: vec3<f32>) -> vec4<f32> {
     let row = size.x;
     let plane = size.x * size.y;
     let first = bodies[b].first_node + cell.z * plane + cell.y * row + cell.x;
-    let c000 = maps[first].x;
-    let c100 = maps[first + 1u].x;
-    let c010 = maps[first + row].x;
-    let c110 = maps[first + row + 1u].x;
-    let c001 = maps[first + plane].x;
-    let c101 = maps[first + plane + 1u].x;
-    let c011 = maps[first + plane + row].x;
-    let c111 = maps[first + plane + row + 1u].x;
+    let c000 = maps[first];
+    let c100 = maps[first + 1u];
+    let c010 = maps[first + row];
+    let c110 = maps[first + row + 1u];
+    let c001 = maps[first + plane];
+    let c101 = maps[first + plane + 1u];
+    let c011 = maps[first + plane + row];
+    let c111 = maps[first + plane + row + 1u];
     let x00 = mix(c000, c100, f.x);
     let x10 = mix(c010, c110, f.x);
     let x01 = mix(c001, c101, f.x);
     let x11 = mix(c011, c111, f.x);
     let y0 = mix(x00, x10, f.y);
     let y1 = mix(x01, x11, f.y);
-    let dx = mix(mix(c100 - c000, c110 - c010, f.y), mix(c101 - c001, c111 - c011, f.y), f.z);
-    let dy = mix(x10 - x00, x11 - x01, f.z);
-    return vec4(inverse * vec3(dx, dy, y1 - y0), mix(y0, y1, f.z));
+    let value = mix(y0, y1, f.z);
+    let dx = mix(mix(c100 - c000, c110 - c010, f.y), mix(c101 - c001, c111 - c011, f.y), f.z) * inverse;
+    let dy = mix(x10 - x00, x11 - x01, f.z) * inverse;
+    let dz = (y1 - y0) * inverse;
+    return Field(value.x, value.y, vec3(dx.x, dy.x, dz.x), vec3(dx.y, dy.y, dz.y));
 }
 
-// The effective distance at a point of the mesh's frame inside the map (w), and its gradient (xyz): a quadratic B-spline, see
+// The effective distance at a point of the mesh's frame inside the map (w), and its gradient (xyz), by a quadratic B-spline; see
 // solid/spline.rs.
 fn effective_at(b: u32, y: vec3<f32>) -> vec4<f32> {
     let size = vec3(bodies[b].nodes_x, bodies[b].nodes_y, bodies[b].nodes_z);

@@ -40,10 +40,21 @@ impl Interior {
     }
 }
 
-/// The signed distance in m at a point of the mesh's frame and its gradient, by linear interpolation of the map; `None` if the body
-/// is not nearer than `reach`.
+/// The values of a body's map at a point, by linear interpolation.
+pub(super) struct Field {
+    /// Signed distance in m.
+    pub distance: f32,
+    /// Effective distance in m.
+    pub effective: f32,
+    /// Gradient of the signed distance in the mesh's frame.
+    pub distance_gradient: Vec3,
+    /// Gradient of the effective distance in the mesh's frame.
+    pub effective_gradient: Vec3,
+}
+
+/// The values of the map at a point of the mesh's frame; `None` if the body is farther than the support radius.
 #[inline]
-pub(super) fn distance_at(body: &Body, maps: &[Vec2], y: Vec3, reach: f32) -> Option<(f32, Vec3)> {
+pub(super) fn at(body: &Body, maps: &[Vec2], y: Vec3, support: f32) -> Option<Field> {
     let size = UVec3::new(body.nodes_x, body.nodes_y, body.nodes_z);
     let high = body.field_min + (size - UVec3::ONE).as_vec3() * body.cell_size;
     if y.cmple(body.field_min).any() || y.cmpge(high).any() {
@@ -55,28 +66,34 @@ pub(super) fn distance_at(body: &Body, maps: &[Vec2], y: Vec3, reach: f32) -> Op
     let f = at - cell.as_vec3();
     let (row, plane) = (size.x as usize, (size.x * size.y) as usize);
     let first = body.first_node as usize + cell.z as usize * plane + cell.y as usize * row + cell.x as usize;
-    let node = |k: usize| maps[first + k].x;
+    let node = |k: usize| maps[first + k];
     // Distances differ by at most a cell between neighbouring nodes, so one read rejects most particles.
-    if node(0) >= reach + 3.0 * body.cell_size {
+    if node(0).min_element() >= support + 3.0 * body.cell_size {
         return None;
     }
     let (c000, c100, c010, c110) = (node(0), node(1), node(row), node(row + 1));
     let (c001, c101, c011, c111) = (node(plane), node(plane + 1), node(plane + row), node(plane + row + 1));
-    let mix = |a: f32, b: f32, t: f32| a * (1.0 - t) + b * t;
+    let mix = |a: Vec2, b: Vec2, t: f32| a * (1.0 - t) + b * t;
     let (x00, x10) = (mix(c000, c100, f.x), mix(c010, c110, f.x));
     let (x01, x11) = (mix(c001, c101, f.x), mix(c011, c111, f.x));
     let (y0, y1) = (mix(x00, x10, f.y), mix(x01, x11, f.y));
     let value = mix(y0, y1, f.z);
-    if value >= reach {
+    if value.min_element() >= support {
         return None;
     }
-    let dx = mix(mix(c100 - c000, c110 - c010, f.y), mix(c101 - c001, c111 - c011, f.y), f.z);
-    let dy = mix(x10 - x00, x11 - x01, f.z);
-    Some((value, inverse * Vec3::new(dx, dy, y1 - y0)))
+    let dx = mix(mix(c100 - c000, c110 - c010, f.y), mix(c101 - c001, c111 - c011, f.y), f.z) * inverse;
+    let dy = mix(x10 - x00, x11 - x01, f.z) * inverse;
+    let dz = (y1 - y0) * inverse;
+    Some(Field {
+        distance: value.x,
+        effective: value.y,
+        distance_gradient: Vec3::new(dx.x, dy.x, dz.x),
+        effective_gradient: Vec3::new(dx.y, dy.y, dz.y),
+    })
 }
 
-/// The effective distance in m at a point of the mesh's frame inside the map, and its gradient, which is continuous: the maps hold
-/// the coefficients of a spline.
+/// The effective distance in m at a point of the mesh's frame inside the map, and its gradient, by a spline whose gradient is
+/// continuous.
 #[inline]
 pub(super) fn effective_at(body: &Body, maps: &[Vec2], y: Vec3) -> (f32, Vec3) {
     let size = UVec3::new(body.nodes_x, body.nodes_y, body.nodes_z);
@@ -113,7 +130,7 @@ pub(crate) fn nearest<'a>(
     x: Vec3,
     reach: f32,
 ) -> Option<f32> {
-    let distances = bodies.filter_map(|body| Some(distance_at(body, maps, body.local(x), reach)?.0));
+    let distances = bodies.filter_map(|body| Some(at(body, maps, body.local(x), reach)?.distance));
     distances.filter(|distance| *distance < reach).reduce(f32::min)
 }
 
@@ -124,8 +141,9 @@ pub(crate) fn penetration(body: &Body, maps: &[Vec2], x: Vec3) -> Option<(f32, V
     if x.distance_squared(body.position) >= body.radius * body.radius {
         return None;
     }
-    let (distance, gradient) = distance_at(body, maps, body.local(x), 0.0)?;
-    Some((distance, body.rotation() * (gradient / gradient.length().max(1e-6))))
+    let field = at(body, maps, body.local(x), 0.0).filter(|field| field.distance < 0.0)?;
+    let steepness = field.distance_gradient.length().max(1e-6);
+    Some((field.distance, body.rotation() * (field.distance_gradient / steepness)))
 }
 
 /// The sum over boundary particles around a point of the mesh's frame: minus the gradient of their kernel fraction

@@ -123,15 +123,15 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
     if (!is_in_map(b, y)) {
         return no_contact();
     }
-    let nearest = distance_at(b, y);
+    let field = field_at(b, y);
     let support = params.support_radius;
-    if (nearest.w >= support) {
+    if (min(field.distance, field.effective) >= support) {
         return no_contact();
     }
     var contact = no_contact();
     contact.body = b;
-    contact.distance = nearest.w;
-    contact.normal = turned(orientation, nearest.xyz / max(length(nearest.xyz), 1e-6));
+    contact.distance = field.distance;
+    contact.normal = turned(orientation, field.distance_gradient / max(length(field.distance_gradient), 1e-6));
     if (bodies[b].way == BODY_PARTICLES) {
         let sum = sampled(b, y);
         contact.kernel_fraction = min(sum.w, 1.0);
@@ -139,7 +139,10 @@ fn contact_with(b: u32, x: vec3<f32>) -> Contact {
         contact.slope = turned(orientation, sum.xyz);
         contact.effective = support * q_of_fraction(contact.kernel_fraction);
     } else {
-        let effective = effective_at(b, y);
+        var effective = vec4(field.effective_gradient, field.effective);
+        if (params.is_implicit == 1u) {
+            effective = effective_at(b, y);
+        }
         let distance = stretched_distance(effective.w);
         let slope = distance.y * plane_through((distance.x + params.slope_offset) / support).y;
         contact.kernel_fraction = plane_through(effective.w / support).x;

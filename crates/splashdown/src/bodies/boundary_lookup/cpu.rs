@@ -231,9 +231,14 @@ impl Around<'_> {
         let rotation = body.rotation();
         let y = rotation.conjugate() * away + body.center;
         let support = params.support_radius;
-        let Some((distance, normal)) = field::distance_at(body, maps, y, support) else { return NO_CONTACT };
-        let normal = rotation * (normal / normal.length().max(1e-6));
-        let mut contact = Contact { body: b as u32, distance, normal, ..NO_CONTACT };
+        let Some(field) = field::at(body, maps, y, support) else { return NO_CONTACT };
+        let length = field.distance_gradient.length().max(1e-6);
+        let mut contact = Contact {
+            body: b as u32,
+            distance: field.distance,
+            normal: rotation * (field.distance_gradient / length),
+            ..NO_CONTACT
+        };
         if body.way == Body::PARTICLES {
             let sum = field::sampled::<K>(body, maps, y, support, interior);
             contact.kernel_fraction = sum.w.min(1.0);
@@ -241,7 +246,11 @@ impl Around<'_> {
             contact.slope = rotation * sum.xyz();
             contact.effective = support * q_of_fraction(K::WALLS, contact.kernel_fraction);
         } else {
-            let (effective, gradient) = field::effective_at(body, maps, y);
+            let (effective, gradient) = if params.is_implicit == 1 {
+                field::effective_at(body, maps, y)
+            } else {
+                (field.effective, field.effective_gradient)
+            };
             let (stretched, steepness) = stretched_distance(params, effective);
             let (_, slope) = plane_through(K::WALLS, (stretched + params.slope_offset) / support);
             contact.kernel_fraction = plane_through(K::WALLS, effective / support).0;

@@ -21,13 +21,13 @@ fn collide(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroup
         if (!is_in_map(b, y)) {
             continue;
         }
-        let nearest = distance_at(b, y);
-        if (nearest.w >= 0.0) {
+        let field = field_at(b, y);
+        if (field.distance >= 0.0) {
             continue;
         }
-        let steepness = max(length(nearest.xyz), 1e-6);
-        let normal = turned(bodies[b].orientation, nearest.xyz / steepness);
-        p.position -= nearest.w * normal;
+        let steepness = max(length(field.distance_gradient), 1e-6);
+        let normal = turned(bodies[b].orientation, field.distance_gradient / steepness);
+        p.position -= field.distance * normal;
         let arm = p.position - bodies[b].position;
         let relative = p.velocity - bodies[b].velocity - cross(bodies[b].angular_velocity, arm);
         p.velocity -= min(dot(relative, normal), 0.0) * normal;

@@ -36,7 +36,7 @@ fn change_row(slot: u32, row: u32) {
         for (var i = 0; i < 8; i++) {
             let y = body_point(b, folded(node_position(node + vec3<i32>(i, 0, 0))));
             if is_in_map(b, y) {
-                distances[i] = min(distances[i], distance_at(b, y).w);
+                distances[i] = min(distances[i], field_at(b, y).distance);
                 is_near = true;
             }
         }

@@ -24,7 +24,7 @@ fn pin(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) g
         }
         let y = body_point(b, x);
         if is_in_map(b, y) {
-            nearest = min(nearest, distance_at(b, y).w);
+            nearest = min(nearest, field_at(b, y).distance);
         }
     }
     if abs(nearest) < ON_BODY * lattice.cell_size {
