@@ -103,6 +103,20 @@ fn a_pool_with_bodies_at_walls_starts_at_rest_density() {
     });
 }
 
+/// With linear interpolation of the map the edges of this tank moved at 9 % of the square root of g times the depth, and all of
+/// its water at 2.5 %.
+#[test]
+fn water_in_the_edges_of_a_mesh_tank_comes_to_rest() {
+    let spacing = 0.025;
+    let gap = 2.0 * spacing;
+    let mut scene = pool::pool("method = \"dfsph\"\n", spacing);
+    let tank = tub(Vec3::splat(gap), (SIZE - gap).with_y(SIZE.y - 0.1), 0.1);
+    scene.bodies.push(pool::body("tank", &tank, BoundaryKind::Map));
+    let outcome = pool::run(&scene);
+    assert!(outcome.rms < 0.01, "{outcome}");
+    assert!(outcome.lost == 0 && outcome.inside == 0, "{outcome}");
+}
+
 #[test]
 fn a_tank_mesh_at_the_sides_of_the_domain_does_not_count_twice() {
     let settings = SolidSettings {

@@ -79,7 +79,7 @@ fn the_consistent_distance_has_the_value_and_the_slope_of_a_lattice() {
     ] {
         let [missing, gradient] = half_lattice_sums(kernels, ratio, 0.5);
         let solid = SolidDistance::of_lattice(kernels, ratio);
-        let (density, slope) = kernels.density((0.25 + 0.25 * solid.stretch + solid.offset) / ratio);
+        let (density, slope) = kernels.density((0.5 * solid.stretch + solid.offset) / ratio);
         assert!(
             (density / missing - 1.0 + SolidDistance::MARGIN).abs() < 0.01,
             "{kernels:?} {ratio}: {density}"
@@ -107,7 +107,7 @@ fn the_distance_for_two_layers_has_their_gradients() {
     ] {
         let error = |solid: SolidDistance, distance: f32| {
             let [_, gradient] = half_lattice_sums(kernels, ratio, distance.into());
-            let stretched = distance + (solid.stretch - 1.0) * (distance - solid.stretched_from);
+            let stretched = distance + (solid.stretch - 1.0) * (distance - Params::STRETCHED_FROM);
             let q = (stretched + solid.slope_offset) / ratio;
             let slope = if q < 1.0 { solid.stretch * kernels.density(q).1 } else { 0.0 };
             (slope - gradient).abs()
@@ -139,4 +139,33 @@ fn the_lattice_behind_a_plane_matches_independent_values() {
             "{kernels:?}: {part} {slope}"
         );
     }
+}
+
+#[test]
+fn the_kernel_of_a_stretched_plane_fills_its_fraction() {
+    let support = 0.1;
+    let stretched = PlaneFraction { kernels: KernelPair::WendlandBlend, stretch: 1.2, offset: 0.006 };
+    // The part of a radial kernel beyond a plane at d is 2 pi times the integral of W r (r - d).
+    let beyond = |fraction: PlaneFraction, d: f32| {
+        const STEPS: usize = 20_000;
+        let step = (support - d) / STEPS as f32;
+        let r = |k: usize| d + (k as f32 + 0.5) * step;
+        let sum: f64 =
+            (0..STEPS).map(|k| f64::from(fraction.weight(r(k), support) * r(k) * (r(k) - d) * step)).sum();
+        sum as f32
+    };
+    let own = PlaneFraction::of(KernelPair::WendlandBlend);
+    for fraction in [own, stretched] {
+        for [near, far] in [[0.01, 0.03], [0.025, 0.05]] {
+            let ratio = beyond(fraction, near) / beyond(fraction, far);
+            let expected = fraction.at(near, support) / fraction.at(far, support);
+            assert!((ratio / expected - 1.0).abs() < 1e-3, "{fraction:?} {near} {far}: {ratio} {expected}");
+        }
+        for part in [0.02, 0.3, 0.7] {
+            assert!((fraction.at(fraction.distance(part, support), support) - part).abs() < 1e-4);
+        }
+    }
+    // Control: the fluid's own kernel does not fill the stretched fraction.
+    let ratio = beyond(own, 0.01) / beyond(own, 0.03);
+    assert!((ratio * stretched.at(0.03, support) / stretched.at(0.01, support) - 1.0).abs() > 0.1);
 }
