@@ -146,9 +146,9 @@ fn spiky(q: f32) -> (f32, f32) {
 /// The part D(q) of a kernel that a plane wall fills at the distance d, with q = (stretch d + offset) / H, and the kernel for
 /// which this holds.
 ///
-/// The kernel with D'' = 2 pi q W(q) fills D; the one that fills D at a stretched distance is W(q) q / r, times the square of the
-/// stretch, with q = stretch r + offset. With it, edges and corners follow from the integral over the solid as planes do: where two
-/// planes meet at right angles, they fill 1 - (1 - D1) (1 - D2) within 1 % of the rest density.
+/// The part D of a kernel W has D'' = 2 pi q W(q), so the kernel for which the part at the distance r is D(q) with the q above is
+/// W(q) q H / r, but for a factor. The part that a body of any shape fills is the integral of this kernel over the body: inner
+/// edges and corners then fit the relation for planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneFraction {
     /// The kernels of the fluid.

@@ -17,8 +17,8 @@ pub struct DistanceField {
     /// Number of nodes along each axis.
     pub nodes: [u32; 3],
     /// Per node, x fastest: the signed distance in m, negative inside; and the effective distance in m, which is the distance of
-    /// the plane wall that fills the same fraction of the kernel. The first is interpolated linearly, the second by a quadratic
-    /// B-spline.
+    /// the plane wall that fills the same fraction of the kernel. Both are interpolated linearly; with an implicit pressure the
+    /// second is the coefficient of a quadratic B-spline.
     pub values: Vec<Vec2>,
 }
 
