@@ -106,7 +106,7 @@ fn after_a_step(spacing: &str, executor: &mut Executor) -> Result<(u32, BufferSe
     executor.write(fields.state, &[state])?;
     let mut step = Recording::new("step");
     cells.record_first_count(&mut step, &fields);
-    step.append(&scheme.step(&cells, &fields, &Couplings::default(), n));
+    step.append(&scheme.step(&cells, &fields, &Couplings::default(), n, &scheme.solver_rounds()));
     step.append(&state::end_step::record(&fields));
     executor.run(&step)?;
     // The passes of the iterations do nothing once the solver has stopped.

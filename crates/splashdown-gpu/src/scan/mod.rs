@@ -27,8 +27,13 @@
 mod cpu;
 
 use crate::{
-    Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, Recording, bindings, gpu_struct, wgsl,
+    Buffer, BufferSet, DispatchSize, Executor, GpuError, PassDesc, Recording, WgslModule, bindings,
+    gpu_struct, wgsl,
 };
+
+/// The WGSL side of [`ScanParams`].
+pub const PARAMS: WgslModule =
+    WgslModule { name: "gpu/scan_params", source: include_str!("scan_params.wgsl") };
 
 /// Up to this length one workgroup computes the whole scan.
 const SINGLE_MAX: u32 = 16_384;
@@ -41,8 +46,9 @@ const _: () = assert!(RUN <= 8, "the passes load eight");
 const BLOCK: u32 = 256 * RUN as u32;
 
 gpu_struct! {
-    /// Mirrors `ScanParams` in the passes' WGSL.
-    struct ScanParams {
+    /// What a scan adds up. A pass may set both to zero: the scan then has no effect but to write the zero before the
+    /// first count, until they are set again.
+    pub struct ScanParams {
         /// Number of counts.
         len: u32,
         /// Number of blocks.
@@ -81,7 +87,7 @@ const ANY: u32 = u32::MAX;
 static REDUCE: PassDesc = PassDesc {
     label: "scan.reduce",
     wgsl: include_str!("scan_reduce.wgsl"),
-    imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX],
+    imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX, PARAMS],
     entry: "scan_reduce",
     workgroup_size: [256, 1, 1],
     constants: &[("RUN", RUN as f64), ("MOST", ANY as f64)],
@@ -92,7 +98,7 @@ static REDUCE: PassDesc = PassDesc {
 static SINGLE: PassDesc = PassDesc {
     label: "scan.single",
     wgsl: include_str!("scan_single.wgsl"),
-    imports: &[wgsl::WORKGROUP_PREFIX],
+    imports: &[wgsl::WORKGROUP_PREFIX, PARAMS],
     entry: "scan_single",
     workgroup_size: [256, 1, 1],
     constants: &[("MOST", ANY as f64)],
@@ -103,7 +109,7 @@ static SINGLE: PassDesc = PassDesc {
 static SPREAD: PassDesc = PassDesc {
     label: "scan.spread",
     wgsl: include_str!("scan_spread.wgsl"),
-    imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX],
+    imports: &[wgsl::INDEX, wgsl::WORKGROUP_PREFIX, PARAMS],
     entry: "scan_spread",
     workgroup_size: [256, 1, 1],
     constants: &[("RUN", RUN as f64), ("MOST", ANY as f64)],
@@ -227,7 +233,7 @@ impl Scan {
         most_sums: u32,
     ) -> Result<Self, GpuError> {
         let blocks = len.div_ceil(passes.block);
-        let params = executor.create_uniform("scan_params", &ScanParams { len, blocks })?;
+        let params = executor.create_small("scan_params", &[ScanParams { len, blocks }])?;
         let mut scan = Self { len, passes, params, levels: None };
         if len > single_max {
             let mut levels =
@@ -248,6 +254,11 @@ impl Scan {
     #[expect(clippy::len_without_is_empty, reason = "a scan is not a container")]
     pub fn len(&self) -> u32 {
         self.len
+    }
+
+    /// The buffer that says what the scan adds up, for passes that turn it off and on.
+    pub fn params(&self) -> Buffer<ScanParams> {
+        self.params
     }
 
     /// Appends the scan: `starts[i]` becomes the sum of `counts[..i]` for every `i` up to and including the number of
@@ -337,6 +348,32 @@ mod tests {
             let expected = |i: u32| i / 5 * 10 + [0, 0, 1, 3, 6][i as usize % 5];
             let wrong = (0..=len).find(|&i| starts[i as usize] != expected(i));
             assert_eq!(wrong, None, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_scan_of_no_counts_has_no_effect() {
+        for (name, mut executor) in testing::executors("a_scan_of_no_counts_has_no_effect") {
+            // One dispatch, two and three.
+            for (len, most_sums) in [(100, MOST_SUMS), (50_000, MOST_SUMS), (50_000, 0)] {
+                let counts: Vec<u32> = (0..len).map(|i| testing::noise(i) >> 20).collect();
+                let input = executor.create_from("counts", &counts).unwrap();
+                let starts = executor.create::<u32>("starts", counts.len() + 1).unwrap();
+                let scan = Scan::with(&mut executor, len, &COUNTS, SINGLE_MAX, most_sums).unwrap();
+                let mut recording = Recording::new("scan");
+                scan.record(&mut recording, input, starts);
+                executor.run(&recording).unwrap();
+                let expected = executor.read(starts).unwrap();
+                let on = executor.read(scan.params()).unwrap();
+                executor.write(scan.params(), &[ScanParams { len: 0, blocks: 0 }]).unwrap();
+                executor.write(input, &vec![0; counts.len()]).unwrap();
+                executor.run(&recording).unwrap();
+                assert!(executor.read(starts).unwrap() == expected, "{name}, {len}");
+                // Control: turned on again, it adds up the changed counts.
+                executor.write(scan.params(), &on).unwrap();
+                executor.run(&recording).unwrap();
+                assert!(executor.read(starts).unwrap().iter().all(|&start| start == 0), "{name}, {len}");
+            }
         }
     }
 

@@ -1,10 +1,6 @@
 #import gpu/index
 #import gpu/workgroup_prefix
-
-struct ScanParams {
-    len: u32,
-    blocks: u32,
-}
+#import gpu/scan_params
 
 #bindings
 
@@ -13,7 +9,7 @@ override MOST: u32 = 0xffffffffu; // 1 treats every value other than 0 as 1
 
 fn count_at(first: u32, i: u32) -> u32 {
     let at = first + i * 256u;
-    return select(0u, min(counts[min(at, params.len - 1u)], MOST), i < RUN && at < params.len);
+    return select(0u, min(counts[min(at, max(params.len, 1u) - 1u)], MOST), i < RUN && at < params.len);
 }
 
 @compute @workgroup_size(256)

@@ -1,9 +1,5 @@
 #import gpu/workgroup_prefix
-
-struct ScanParams {
-    len: u32,
-    blocks: u32,
-}
+#import gpu/scan_params
 
 #bindings
 

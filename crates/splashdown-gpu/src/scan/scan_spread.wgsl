@@ -1,10 +1,6 @@
 #import gpu/index
 #import gpu/workgroup_prefix
-
-struct ScanParams {
-    len: u32,
-    blocks: u32,
-}
+#import gpu/scan_params
 
 #bindings
 
@@ -30,7 +26,7 @@ fn is_in_run(first: u32, i: u32) -> bool {
 }
 
 fn count_at(first: u32, i: u32) -> u32 {
-    return select(0u, min(counts[min(first + i, params.len - 1u)], MOST), is_in_run(first, i));
+    return select(0u, min(counts[min(first + i, max(params.len, 1u) - 1u)], MOST), is_in_run(first, i));
 }
 
 fn store(first: u32, i: u32, start: u32) {

@@ -119,10 +119,16 @@ impl Cells {
     pub fn buffers(&self) -> BufferSet {
         let mut buffers = buffer_set!(self => cell_start, cell_counts, entries);
         buffers.add("grid", self.grid_uniform);
-        if let Sorter::Bitonic { pairs, .. } = self.sorter {
-            buffers.add("pairs", pairs);
+        match self.sorter {
+            Sorter::Counting(scan) => buffers.add("scan_params", scan.params()),
+            Sorter::Bitonic { pairs, .. } => buffers.add("pairs", pairs),
         }
         buffers
+    }
+
+    /// True if the sort can be turned off on the device, which the suspension of a step needs.
+    pub(crate) fn can_pause(&self) -> bool {
+        matches!(self.sorter, Sorter::Counting(_))
     }
 
     /// Appends the copies of the carried quantities that a step does not change from the sorted arrays back to the

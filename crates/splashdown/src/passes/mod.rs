@@ -19,6 +19,7 @@ pub mod normals;
 pub mod shifted_integrate;
 pub mod smooth_normals;
 pub mod state_equation;
+pub mod suspension;
 pub mod tension_force;
 pub mod viscous;
 
@@ -83,5 +84,6 @@ pub fn passes() -> Vec<&'static PassDesc> {
         &normals::CUBIC_SPLINE,
         &state_equation::STATE_EQUATION,
     ];
-    explicit.into_iter().chain(implicit::passes()).chain(viscous::passes()).collect()
+    let implicit = implicit::passes().into_iter().chain(viscous::passes()).chain(suspension::passes());
+    explicit.into_iter().chain(implicit).collect()
 }

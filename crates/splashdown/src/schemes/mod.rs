@@ -12,12 +12,14 @@
 mod dfsph;
 mod mueller2003;
 mod params;
+mod rounds;
 mod step;
 #[cfg(test)]
 mod tests;
 mod wcsph;
 
 pub use params::{longest_step, params};
+pub use rounds::SolverRounds;
 pub use step::{Couplings, Step};
 
 use splashdown_gpu::{DispatchSize, Recording};
@@ -28,11 +30,12 @@ use crate::boundary::part::Part;
 use crate::cells::{self, Cells};
 #[cfg(test)]
 use crate::coupling::Stage;
+use crate::passes::suspension;
 use crate::scene::{self, DensityMode, Derived, KernelKind, Method, Scene, Solver, SurfaceTension};
 use crate::state::{CARRIED, CARRIED_IMPLICIT, Carried, Extras, Fields, begin};
 
 /// Prefixes of the labels of passes that may run again after the end of a frame without testing its flag. Each computes
-/// its output from its input alone, and with empty cells there is no input. `flow.emit` follows the schedule, which is
+/// its output from its input alone, and with empty cells there is no input. The cells of a suspended step are empty as well. `flow.emit` follows the schedule, which is
 /// empty after the end of a frame. All other passes of a step read the flag.
 pub(crate) const REPEATABLE: &[&str] = &[
     "scan.",
@@ -130,7 +133,26 @@ impl Scheme {
         self.method == Method::Wcsph && !self.has_normals() && !self.is_density_integrated
     }
 
-    /// Records one step. [`begin_frame`] precedes the first step of a frame, and
+    /// Begins a frame whose duration is in the buffer `duration`, and counts the particles for the first sort.
+    pub fn begin_frame(&self, cells: &Cells, fields: &Fields) -> Recording {
+        let mut recording = Recording::new("begin frame");
+        let buffers = fields.buffers().and(&cells.buffers());
+        if self.is_implicit() && cells.can_pause() {
+            // An abandoned frame may have a suspended step, which turned the sort off.
+            recording.dispatch(&suspension::resume::VISCOSITY, DispatchSize::Groups(1), &buffers);
+            recording.dispatch(&suspension::resume::PRESSURE, DispatchSize::Groups(1), &buffers);
+        }
+        recording.dispatch(&begin::BEGIN, DispatchSize::Groups(1), &buffers);
+        cells.record_first_count(&mut recording, fields);
+        recording
+    }
+
+    /// The largest numbers of iterations of a step.
+    pub fn solver_rounds(&self) -> SolverRounds {
+        SolverRounds::new(self.max_iterations, self.most_viscous_iterations)
+    }
+
+    /// Records one step. [`begin_frame`](Self::begin_frame) precedes the first step of a frame, and
     /// [`end_step`](crate::state::end_step::record) follows the last step of a submission. Needs a buffer of
     /// accelerations unless the scheme [is fused](Self::is_fused) and there are no couplings.
     pub fn step(
@@ -139,8 +161,9 @@ impl Scheme {
         fields: &Fields,
         couplings: &Couplings<'_>,
         particles: u32,
+        rounds: &SolverRounds,
     ) -> Recording {
-        let mut step = Step::new(*self, "step", cells, fields, couplings, particles);
+        let mut step = Step::new(*self, "step", cells, fields, couplings, particles).with_rounds(rounds);
         match self.method {
             Method::Wcsph => wcsph::wcsph(&mut step),
             Method::Mueller2003 => mueller2003::mueller2003(&mut step),
@@ -181,14 +204,6 @@ pub(crate) fn part_of_forces(
     step.acceleration(part);
     step.couple(Stage::BoundaryForces(part));
     step.finish()
-}
-
-/// Begins a frame whose duration is in the buffer `duration`, and counts the particles for the first sort.
-pub fn begin_frame(cells: &Cells, fields: &Fields) -> Recording {
-    let mut recording = Recording::new("begin frame");
-    recording.dispatch(&begin::BEGIN, DispatchSize::Groups(1), &fields.buffers());
-    cells.record_first_count(&mut recording, fields);
-    recording
 }
 
 impl From<scene::Sort> for cells::Sort {

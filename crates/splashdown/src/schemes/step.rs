@@ -4,7 +4,7 @@ use std::mem::offset_of;
 
 use splashdown_gpu::{DispatchSize, Flag, PassDesc, Recording, Rounds};
 
-use super::Scheme;
+use super::{Scheme, SolverRounds};
 use crate::bodies::Bodies;
 use crate::boundary::part::Part;
 use crate::cells::Cells;
@@ -13,7 +13,8 @@ use crate::flow::Flow;
 use crate::mouse_force::MouseForceCoupling;
 use crate::passes::{
     acceleration, continuity, corrected_acceleration, density, force_integrate, implicit, integrate, mueller,
-    neighbours, normals, shifted_integrate, smooth_normals, state_equation, tension_force, viscous,
+    neighbours, normals, shifted_integrate, smooth_normals, state_equation, suspension, tension_force,
+    viscous,
 };
 use crate::probes::Probes;
 use crate::scene::{KernelKind, Method, SurfaceTension};
@@ -62,6 +63,7 @@ pub struct Step<'a> {
     scheme: Scheme,
     couplings: Couplings<'a>,
     recorder: StepRecorder<'a>,
+    rounds: SolverRounds,
     /// Number of particles, including removed ones and those not yet emitted.
     count: u32,
 }
@@ -87,7 +89,12 @@ impl<'a> Step<'a> {
             is_density_integrated: scheme.is_density_integrated,
             is_implicit: scheme.is_implicit(),
         };
-        Self { scheme, couplings: *couplings, recorder, count }
+        Self { scheme, couplings: *couplings, recorder, rounds: scheme.solver_rounds(), count }
+    }
+
+    /// Records the rounds of the solvers so that the host can change their numbers.
+    pub(super) fn with_rounds(self, rounds: &SolverRounds) -> Self {
+        Self { rounds: rounds.clone(), ..self }
     }
 
     pub(super) fn finish(self) -> Recording {
@@ -260,8 +267,8 @@ impl<'a> Step<'a> {
         self.couple(Stage::Viscosity(ViscousStage::Update));
         let iteration = std::mem::replace(&mut self.recorder.recording, step);
         let stopped = Flag::new(self.recorder.fields.viscous, offset_of!(ViscousState, stopped));
-        let rounds = Rounds::new(self.scheme.most_viscous_iterations);
-        self.recorder.recording.repeat(&iteration, &rounds, stopped);
+        let rounds = self.rounds.viscosity.clone();
+        self.iterate(&iteration, &rounds, stopped, &suspension::resume::VISCOSITY);
         self.couple(Stage::Viscosity(ViscousStage::Force));
         self.recorder.dispatch_particles(&viscous::finish::FINISH);
     }
@@ -304,8 +311,21 @@ impl<'a> Step<'a> {
         self.recorder.dispatch(&implicit::decide::DECIDE, DispatchSize::Groups(1));
         let iteration = std::mem::replace(&mut self.recorder.recording, step);
         let stopped = Flag::new(self.recorder.fields.solve, offset_of!(SolveState, stopped));
-        self.recorder.recording.repeat(&iteration, &Rounds::new(self.scheme.max_iterations), stopped);
+        let rounds = self.rounds.pressure.clone();
+        self.iterate(&iteration, &rounds, stopped, &suspension::resume::PRESSURE);
         self.recorder.dispatch_particles(&implicit::finish::FINISH);
+    }
+
+    /// Repeats an iteration of a solver until it has stopped, or suspends the step after the rounds.
+    fn iterate(&mut self, iteration: &Recording, rounds: &Rounds, stopped: Flag, resume: &'static PassDesc) {
+        let can_pause = self.recorder.cells.can_pause();
+        if can_pause {
+            self.recorder.dispatch(resume, DispatchSize::Groups(1));
+        }
+        self.recorder.recording.repeat(iteration, rounds, stopped);
+        if can_pause {
+            self.recorder.dispatch(&suspension::suspend::SUSPEND, DispatchSize::Groups(1));
+        }
     }
 
     /// Forces and integration in one pass.
@@ -350,7 +370,7 @@ impl<'a> Step<'a> {
         // Time does not advance, so that no invocation is needed without particles.
         self.recorder.particles = DispatchSize::Items(self.count);
         let StepRecorder { recording, cells, fields, .. } = &mut self.recorder;
-        recording.append(&super::begin_frame(cells, fields));
+        recording.append(&self.scheme.begin_frame(cells, fields));
         self.sort();
         self.couple(Stage::BoundaryLookup);
         let StepRecorder { recording, fields, .. } = &mut self.recorder;

@@ -45,7 +45,7 @@ fn step(size: f32, solver: &str, with_mouse_force: bool) -> (u32, Vec<&'static s
         Command::Copy { .. } => "copy",
         Command::Repeat { .. } => "repeat",
     };
-    let step = solver.step(&cells, &fields, &couplings, 64);
+    let step = solver.step(&cells, &fields, &couplings, 64, &solver.solver_rounds());
     (grid.cell_count, step.commands.iter().map(label).collect())
 }
 

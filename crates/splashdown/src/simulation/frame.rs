@@ -7,13 +7,13 @@ use super::Simulation;
 use super::phases::HostAction;
 use crate::bodies::Bodies;
 use crate::probes::Probes;
-use crate::scene::{Derived, Scene};
+use crate::schemes::Scheme;
 use crate::state::{DEAD_NON_FINITE, StepCounters, StepState};
 use crate::{SimulationError, Stats};
 
 /// The largest number of steps in one submission to a device: bounds the time for which the device is unresponsive.
 pub(super) const MOST_STEPS: u32 = 64;
-/// The largest number of pressure iterations in one submission.
+/// The largest number of iterations of solvers in one submission to a device.
 const MOST_ITERATIONS: u32 = 320;
 /// The largest number of steps in one submission on the CPU, and on a GPU if the host has to act between steps. The
 /// CPU executor tests for the end of the frame before each step.
@@ -22,19 +22,29 @@ pub(super) const HOST_STEPS: u32 = 16;
 /// spacing: later, bodies would have passed into one another, and moving them apart would burst the fluid between them.
 pub(super) const HOST_IMPLICIT_STEPS: u32 = 1;
 
-/// The largest number of steps in one submission with an implicit pressure.
-pub(super) fn most_implicit_steps(scene: &Scene) -> u32 {
-    (MOST_ITERATIONS / Derived::max_iterations(scene)).max(1)
-}
-
 /// A frame in progress.
 pub(super) struct FrameInProgress {
     duration: f32,
-    /// Steps submitted so far.
+    /// Rounds submitted so far: one per step, and more for steps that are suspended.
     submitted: u32,
-    /// The state after the batch before the last, so that the device has work while the host reads it.
-    pending: Option<Readback<StepState>>,
+    /// The state after the batch before the last, so that the device has work while the host reads it, and the rounds up to
+    /// it.
+    pending: Option<(u32, Readback<StepState>)>,
     pub(super) state: Option<StepState>,
+    /// The rounds up to this state.
+    rounds: u32,
+}
+
+impl FrameInProgress {
+    /// The number of rounds to the end of the frame with steps of `stable_dt` seconds, and one more.
+    fn expected_rounds(&self, stable_dt: f32) -> u32 {
+        let Some(state) = self.state else {
+            return ((self.duration / stable_dt).ceil() as u32).saturating_add(1);
+        };
+        let to_come = f64::from((state.remaining / stable_dt).ceil());
+        let per_step = if state.steps > 0 { f64::from(self.rounds) / f64::from(state.steps) } else { 1.0 };
+        self.rounds.saturating_add((to_come * per_step).ceil() as u32).saturating_add(1)
+    }
 }
 
 impl Simulation {
@@ -85,7 +95,8 @@ impl Simulation {
         let input = StepState::frame_input(seconds, start, body_speed.min(self.params.fastest_body()));
         self.executor.write(self.fields.frame_input, &input)?;
         self.executor.run(&self.begin)?;
-        self.frame = Some(FrameInProgress { duration: seconds, submitted: 0, pending: None, state: None });
+        self.frame =
+            Some(FrameInProgress { duration: seconds, submitted: 0, pending: None, state: None, rounds: 0 });
         Ok(())
     }
 
@@ -105,30 +116,29 @@ impl Simulation {
     /// As [`advance`](Self::advance).
     pub async fn continue_frame_async(&mut self) -> Result<Option<Stats>, SimulationError> {
         let Some(mut frame) = self.frame.take() else { return Ok(Some(self.stats)) };
-        // The known state is one batch old or absent. One step more than estimated reaches the end of the frame.
-        let (steps, remaining) =
-            frame.state.map_or((0, frame.duration), |state| (state.steps, state.remaining));
-        let to_come = (remaining / self.stable_dt).ceil() as u32;
-        let expected = steps.saturating_add(to_come).saturating_add(1);
-        let most =
-            if self.executor.gpu().is_some() { self.most_steps } else { self.most_steps.min(HOST_STEPS) };
-        let most = most.min(self.schedule.most_steps());
+        // The known state is one batch old or absent.
+        let remaining = frame.state.map_or(frame.duration, |state| state.remaining);
+        let expected = frame.expected_rounds(self.stable_dt);
+        let most = self.most_steps.min(self.most_at_once()).min(self.schedule.most_steps());
         let left = expected.saturating_sub(frame.submitted).clamp(1, most);
         let steps = 1 << left.ilog2();
         let (mut state_before, mut action) = (remaining, None);
         for submission in self.schedule.submissions(steps) {
             // The action after the last submission waits for the state that is read below.
             if let Some(action) = action {
-                let left = self.executor.fetch(self.fields.state).await?[0].remaining;
-                act(action, &mut self.bodies, self.probes.as_ref(), &mut self.executor, state_before - left)
-                    .await?;
-                state_before = left;
+                let state = self.executor.fetch(self.fields.state).await?[0];
+                if state.done != StepState::SUSPENDED {
+                    let passed = state_before - state.remaining;
+                    act(action, &mut self.bodies, self.probes.as_ref(), &mut self.executor, passed).await?;
+                }
+                state_before = state.remaining;
             }
             self.executor.run(submission.recording())?;
             action = submission.action();
         }
         frame.submitted += steps;
-        let behind = frame.pending.replace(self.executor.request(self.fields.state, 1)?);
+        let newest = (frame.submitted, self.executor.request(self.fields.state, 1)?);
+        let behind = frame.pending.replace(newest);
         // The host waits for the newest state where nothing can overlap: all expected steps are submitted, the
         // executor is the CPU, or a host action precedes the next step.
         let answer = if frame.submitted >= expected || self.executor.gpu().is_none() || action.is_some() {
@@ -136,16 +146,20 @@ impl Simulation {
         } else {
             behind
         };
-        if let Some(readback) = answer {
+        if let Some((rounds, readback)) = answer {
             let state = readback.take().await?[0];
             self.stable_dt = state.stable_dt;
-            if let Some(action) = action {
+            if self.can_suspend() {
+                self.solver_rounds.follow(&state);
+            }
+            // A suspended step has not moved anything.
+            if let Some(action) = action.filter(|_| state.done != StepState::SUSPENDED) {
                 let passed = state_before - state.remaining;
                 act(action, &mut self.bodies, self.probes.as_ref(), &mut self.executor, passed).await?;
             }
-            frame.state = Some(state);
+            (frame.state, frame.rounds) = (Some(state), rounds);
             // With a step below `min_dt` the frame might never end.
-            if state.done != 0 || state.too_small != 0 {
+            if state.done == StepState::COMPLETE || state.too_small != 0 {
                 return self.end_frame(state).await.map(Some);
             }
         }
@@ -153,10 +167,20 @@ impl Simulation {
         Ok(None)
     }
 
+    /// The largest number of rounds in one submission.
+    fn most_at_once(&self) -> u32 {
+        if self.executor.gpu().is_none() {
+            return HOST_STEPS;
+        }
+        let scheme = Scheme::new(&self.scene);
+        let iterations = self.solver_rounds.total(scheme.has_implicit_viscosity());
+        if scheme.is_implicit() { (MOST_ITERATIONS / iterations).max(1) } else { MOST_STEPS }
+    }
+
     pub(super) async fn end_frame(&mut self, state: StepState) -> Result<Stats, SimulationError> {
         let last = self.stats;
-        let passed =
-            if state.done != 0 { state.frame_duration } else { state.frame_duration - state.remaining };
+        let is_complete = state.done == StepState::COMPLETE;
+        let passed = if is_complete { state.frame_duration } else { state.frame_duration - state.remaining };
         if let Some(probes) = &self.probes {
             let taken = probes.take(&mut self.executor, last.time, passed).await?;
             for (rows, more) in self.rows.iter_mut().zip(taken) {

@@ -14,6 +14,8 @@ mod part_tests;
 mod phases;
 mod results;
 mod start;
+#[cfg(test)]
+mod suspension_tests;
 
 pub use inventory::{initial_packing, inventory};
 pub use packing::{InitialDensity, Packing};
@@ -31,6 +33,7 @@ use crate::flow::Flow;
 use crate::mouse_force::MouseForceCoupling;
 use crate::probes::{ProbeRows, Probes};
 use crate::scene::Scene;
+use crate::schemes::SolverRounds;
 use crate::solid::RepairReport;
 use crate::state::{Fields, Params};
 
@@ -56,6 +59,8 @@ pub struct Simulation {
     begin: Recording,
     prime: Recording,
     schedule: Schedule,
+    /// The iterations that a step of the schedule records.
+    solver_rounds: SolverRounds,
     stats: Stats,
     /// The last known stable time step in seconds.
     stable_dt: f32,

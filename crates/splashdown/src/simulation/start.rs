@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use splashdown_gpu::{Executor, Flag, block_on};
 use splashdown_io::Particles;
 
-use super::frame::{HOST_IMPLICIT_STEPS, HOST_STEPS, MOST_STEPS, most_implicit_steps};
+use super::frame::{HOST_IMPLICIT_STEPS, HOST_STEPS, MOST_STEPS};
 use super::phases::{HostAction, Phase, Schedule};
 use super::{Simulation, packing};
 use crate::bodies::{Bodies, LoadedBody};
@@ -172,7 +172,7 @@ impl Simulation {
         let probes = Probes::new(&mut executor, scene, bodies.as_ref())?;
         Built::of(scene).release();
         let mut simulation = Self {
-            begin: schemes::begin_frame(&cells, &fields),
+            begin: scheme.begin_frame(&cells, &fields),
             prime: scheme.initial_state(
                 &cells,
                 &fields,
@@ -185,6 +185,7 @@ impl Simulation {
             fields,
             cells,
             schedule: Schedule::empty(),
+            solver_rounds: scheme.solver_rounds(),
             stats: Stats::default(),
             stable_dt,
             frame: None,
@@ -218,7 +219,12 @@ impl Simulation {
         if !(scheme.is_fused() && couplings.is_empty()) {
             self.fields.make_accelerations(&mut self.executor)?;
         }
-        let step = scheme.step(&self.cells, &self.fields, &couplings, self.params.particle_count);
+        self.solver_rounds = scheme.solver_rounds();
+        if self.can_suspend() {
+            self.solver_rounds.start_with_few();
+        }
+        let count = self.params.particle_count;
+        let step = scheme.step(&self.cells, &self.fields, &couplings, count, &self.solver_rounds);
         let mut phases = vec![Phase::Device(step)];
         if self.bodies.as_ref().is_some_and(Bodies::collide) {
             let steps = if scheme.is_implicit() { HOST_IMPLICIT_STEPS } else { HOST_STEPS };
@@ -226,9 +232,13 @@ impl Simulation {
         }
         let end_step = state::end_step::record(&self.fields);
         let done = Flag::new(self.fields.state, offset_of!(StepState, done)).except(schemes::REPEATABLE);
-        let most = if scheme.is_implicit() { most_implicit_steps(&self.scene) } else { MOST_STEPS };
-        self.schedule = Schedule::new(phases, &end_step, done, most);
+        self.schedule = Schedule::new(phases, &end_step, done, MOST_STEPS);
         Ok(())
+    }
+
+    /// True if steps may be suspended: the executor cannot end iterations when a solver has stopped.
+    pub(super) fn can_suspend(&self) -> bool {
+        self.executor.gpu().is_some() && self.cells.can_pause()
     }
 }
 

@@ -6,7 +6,8 @@ use splashdown_gpu::{Buffer, BufferSet, Executor, GpuError, buffer_set};
 
 use super::list_layers::list_layers;
 use super::{
-    Array, CARRIED, Carried, CarriedArrays, Params, SolveState, StepCounters, StepState, ViscousState,
+    Array, CARRIED, Carried, CarriedArrays, Params, SolveState, StepCounters, StepState, Suspension,
+    ViscousState,
 };
 
 /// The arrays that a scheme needs in addition; without them the buffers have a single entry.
@@ -94,6 +95,8 @@ pub struct Fields {
     pub impulses: Buffer<Vec4>,
     /// The state of the implicit viscosity; one entry.
     pub viscous: Buffer<ViscousState>,
+    /// What a suspended step needs to continue; one entry.
+    pub suspension: Buffer<Suspension>,
     /// The residual of the implicit viscosity in m/s, and one over the diagonal of its matrix; zero where a nozzle
     /// determines the motion. A single entry if the viscosity is explicit, as all of the following.
     pub viscous_residuals: Buffer<Vec4>,
@@ -183,6 +186,7 @@ impl Fields {
             residuals: executor.create("residuals", some(extras.implicit, n.div_ceil(64)))?,
             impulses: executor.create("impulses", some(extras.implicit, n.div_ceil(64)))?,
             viscous: executor.create_small("viscous", &[ViscousState::new(true)])?,
+            suspension: executor.create_from("suspension", &[Suspension::zeroed()])?,
             viscous_residuals: executor.create("viscous_residuals", some(extras.viscous, n))?,
             viscous_products: executor.create("viscous_products", some(extras.viscous, n))?,
             viscous_directions: executor.create("viscous_directions", some(extras.viscous, n))?,
@@ -204,7 +208,7 @@ impl Fields {
             params, state, frame_input, counters, positions, velocities, ids, sorted_positions,
             sorted_velocities, sorted_ids, densities, accelerations, normals, smooth_normals, corrections, shifts,
             boundary_matrices, solve, stiffness, iterates, free_velocities, predicted, neighbours, solid_gradients, residuals, impulses,
-            viscous, viscous_residuals, viscous_products, viscous_directions, viscous_images,
+            viscous, suspension, viscous_residuals, viscous_products, viscous_directions, viscous_images,
         );
         self.carried.iter().for_each(|arrays| arrays.add_to(&mut set));
         set

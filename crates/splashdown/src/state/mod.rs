@@ -12,6 +12,7 @@ mod list_layers;
 mod params;
 mod solve;
 mod step;
+mod suspension;
 mod symmetric;
 mod viscous;
 
@@ -31,6 +32,7 @@ pub(crate) use list_layers::list_layers;
 pub use params::{Params, WGSL as PARAMS};
 pub use solve::{SolveState, WGSL as SOLVE};
 pub use step::{STEPS, StepState, WGSL as STATE};
+pub use suspension::{Suspension, WGSL as SUSPENSION};
 pub(crate) use symmetric::Symmetric;
 pub use symmetric::WGSL as SYMMETRIC;
 pub use viscous::{ViscousState, WGSL as VISCOUS};

@@ -23,6 +23,9 @@ struct StepState {
     body_speed: f32,
 }
 
+const COMPLETE: u32 = 1u;
+const SUSPENDED: u32 = 2u;
+
 // True if the step completes its frame. Both numbers are stored, so that all passes agree.
 fn is_last_step(dt: f32, remaining: f32) -> bool {
     return dt >= remaining;

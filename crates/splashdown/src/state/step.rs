@@ -19,9 +19,10 @@ gpu_struct! {
         time: f32,
         /// The remaining time of the frame in seconds.
         remaining: f32,
-        /// 1 once the frame is complete: passes have no effect then.
+        /// [`COMPLETE`](Self::COMPLETE) once the frame is complete, [`SUSPENDED`](Self::SUSPENDED) while its step is: passes
+        /// have no effect then.
         done: u32,
-        /// Particles to process: all, or none once the frame is complete.
+        /// Particles to process: all, or none while passes have no effect.
         run_count: u32,
         /// Steps of this frame.
         steps: u32,
@@ -59,6 +60,11 @@ gpu_struct! {
 }
 
 impl StepState {
+    /// The value of `done` once the frame is complete.
+    pub const COMPLETE: u32 = 1;
+    /// The value of `done` while a step waits for further iterations ([`passes::suspension`](crate::passes::suspension)).
+    pub const SUSPENDED: u32 = 2;
+
     /// The words of the buffer from which a frame begins: its length and its start in seconds, and the largest speed of
     /// scripted bodies in it in m/s.
     pub fn frame_input(length: f32, start: f64, body_speed: f32) -> [f32; 3] {

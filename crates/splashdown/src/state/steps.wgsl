@@ -43,7 +43,7 @@ fn finish_step() {
     state.density_error = max(state.density_error, excess);
     if (is_last_step(state.dt, state.remaining)) {
         state.remaining = 0.0;
-        state.done = 1u;
+        state.done = COMPLETE;
         state.run_count = 0u;
     } else {
         state.remaining -= state.dt;

@@ -7,7 +7,8 @@ use splashdown::cells::Grid;
 use splashdown::flow::{Nozzle, SinkShape};
 use splashdown::foam::{Diffuse, FoamParams, FoamState};
 use splashdown::probes::ProbePoint;
-use splashdown::state::{Params, SolveState, StepState, ViscousState};
+use splashdown::state::{Params, SolveState, StepState, Suspension, ViscousState};
+use splashdown_gpu::scan::ScanParams;
 use splashdown_gpu::{
     Access, Buffer, BufferSet, DispatchSize, Executor, GpuElement, GpuStruct, PassDesc, Recording, bytemuck,
 };
@@ -26,6 +27,8 @@ pub enum Data {
     State(StepState),
     Solve(SolveState),
     Viscous(ViscousState),
+    Suspension(Suspension),
+    Scan(ScanParams),
     Nozzles(Vec<Nozzle>),
     Drains(Vec<SinkShape>),
     Probes(Vec<ProbePoint>),
@@ -59,6 +62,8 @@ impl Data {
             Self::State(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::Solve(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
             Self::Viscous(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::Suspension(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
+            Self::Scan(v) => bytemuck::cast_slice(std::slice::from_ref(v)),
         }
     }
 
@@ -95,6 +100,8 @@ impl Data {
             Self::State(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::Solve(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
             Self::Viscous(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::Suspension(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
+            Self::Scan(v) => bytemuck::cast_slice_mut(std::slice::from_mut(v)),
         }
     }
 
@@ -188,6 +195,8 @@ fn upload(
         Data::State(v) => target.array(&[*v], |v| Data::State(v[0])),
         Data::Solve(v) => target.array(&[*v], |v| Data::Solve(v[0])),
         Data::Viscous(v) => target.array(&[*v], |v| Data::Viscous(v[0])),
+        Data::Suspension(v) => target.array(&[*v], |v| Data::Suspension(v[0])),
+        Data::Scan(v) => target.array(&[*v], |v| Data::Scan(v[0])),
         Data::Params(v) => target.uniform(v),
         Data::Foam(v) => target.uniform(v),
         Data::Grid(v) => target.uniform(v),

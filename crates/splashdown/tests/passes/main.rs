@@ -17,6 +17,7 @@ mod neighbour_lists;
 mod oracle;
 mod probe_cases;
 mod sort_cases;
+mod suspension_cases;
 mod tension_force_cases;
 mod viscous_cases;
 mod viscous_solve;
@@ -39,6 +40,7 @@ fn all_cases() -> Vec<Case> {
         tension_force_cases::cases(),
         implicit_cases::cases(),
         viscous_cases::cases(),
+        suspension_cases::cases(),
         flow_cases::cases(),
         foam_cases::cases(),
         probe_cases::cases(),

@@ -35,7 +35,7 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
     state.density_error = state.density_error.max(excess);
     if state.is_last_step() {
         state.remaining = 0.0;
-        state.done = 1;
+        state.done = StepState::COMPLETE;
         state.run_count = 0;
     } else {
         state.remaining -= state.dt;

@@ -10,7 +10,7 @@ use crate::bodies::viscous::unknowns::{
 
 pub(super) fn viscous_bodies(buffers: BeginBindings<'_>) {
     let BeginBindings { params, state, viscous, bodies, sums, pressure_sums, responses, unknowns } = buffers;
-    if viscous.stopped != 0 {
+    if viscous.stopped != 0 || state.run_count == 0 {
         return;
     }
     let rows = unknowns.chunks_exact_mut(VECTORS).zip(responses.as_chunks_mut::<2>().0);

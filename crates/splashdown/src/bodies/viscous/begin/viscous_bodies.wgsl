@@ -10,7 +10,8 @@
 @compute @workgroup_size(64)
 fn viscous_bodies(@builtin(global_invocation_id) gid: vec3<u32>) {
     let b = gid.x;
-    if (b >= arrayLength(&bodies) || viscous.stopped != 0u) {
+    // The step may be suspended.
+    if (b >= arrayLength(&bodies) || viscous.stopped != 0u || state.run_count == 0u) {
         return;
     }
     let quantum = 1e-5 * params.particle_mass;

@@ -2,7 +2,7 @@ use glam::{Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::BeginBindings;
-use crate::state::SolveState;
+use crate::state::{SolveState, StepState};
 
 /// Particles per task.
 const CHUNK: usize = 4096;
@@ -21,7 +21,9 @@ pub(super) fn begin(buffers: BeginBindings<'_>) {
         iterates,
         free_velocities,
     } = buffers;
-    *solve = SolveState::new(state.run_count == 0, params.relaxation);
+    if state.done != StepState::SUSPENDED {
+        *solve = SolveState::new(state.run_count == 0, params.relaxation);
+    }
     let active = cell_start[grid.cell_count as usize] as usize;
     let chunks =
         iterates[..active].par_chunks_mut(CHUNK).zip(free_velocities[..active].par_chunks_mut(CHUNK));

@@ -31,7 +31,9 @@ pub static BEGIN: PassDesc = PassDesc {
     bindings: BeginBindings::LIST,
     cpu: |_, slots| {
         let BeginBindings { grid, state, cell_start, sorted_pressures, viscous, iterates } = slots.into();
-        *viscous = ViscousState::new(state.run_count == 0);
+        if state.done != StepState::SUSPENDED {
+            *viscous = ViscousState::new(state.run_count == 0);
+        }
         let active = cell_start[grid.cell_count as usize] as usize;
         let starts = iterates[..active].par_iter_mut().zip(&sorted_pressures[..active]);
         starts.with_min_len(4096).for_each(|(iterate, p)| *iterate = Vec4::new(p.max(0.0), 0.0, 0.0, 0.0));

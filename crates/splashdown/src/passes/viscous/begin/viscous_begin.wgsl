@@ -20,7 +20,7 @@ fn reset() {
 @compute @workgroup_size(64)
 fn viscous_begin(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
-    if (i == 0u) {
+    if (i == 0u && state.done != SUSPENDED) {
         reset();
     }
     if (i < active_count()) {

@@ -27,7 +27,7 @@ pub(super) fn start<K: Kernel, const BODIES: bool>(buffers: StartBindings<'_>) {
         viscous_residuals,
         impulses,
     } = buffers;
-    if viscous.stopped != 0 {
+    if viscous.stopped != 0 || state.run_count == 0 {
         return;
     }
     let scale = 1.0 / params.support_radius;

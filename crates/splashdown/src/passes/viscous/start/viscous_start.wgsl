@@ -64,7 +64,8 @@ fn viscous_start(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    if (viscous.stopped != 0u) {
+    // The step may be suspended.
+    if (viscous.stopped != 0u || state.run_count == 0u) {
         return;
     }
     let i = linear_index(gid, groups, 64u);
