@@ -25,6 +25,12 @@ pub const CHIPS: [Chip; 3] = [
     Chip { family: "vega10", product: "RX Vega 64", lanes: 64.0 * 64.0 * 1.546e9, bandwidth: 484e9 },
 ];
 
+/// A product that has been measured. Its own compiler counts no instructions, so those of a chip of [`CHIPS`] stand for them.
+pub const MEASURED: Chip =
+    Chip { family: "gfx1100", product: "NVIDIA H200", lanes: 132.0 * 128.0 * 1.98e9, bandwidth: 4.8e12 };
+/// Its measured milliseconds of a step, from `docs/performance.md`, for the sizes of the page.
+pub const MEASURED_STEP: [f64; 3] = [0.110, 0.707, 5.62];
+
 /// Candidates that a warp tests for each particle, at a support radius of two spacings.
 const CANDIDATES: f64 = 170.0;
 /// Rows of cells.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use splashdown_gpu::PassDesc;
 
-use crate::chip::{CHIPS, Chip, Compiled};
+use crate::chip::{CHIPS, Chip, Compiled, MEASURED, MEASURED_STEP};
 
 /// The passes of a step of `wcsph` without bodies.
 const STEP: [&str; 6] = [
@@ -17,6 +17,20 @@ const STEP: [&str; 6] = [
 ];
 /// The numbers of particles of the predictions.
 const SIZES: [(&str, f64); 3] = [("64K", 65_536.0), ("1M", 1_048_576.0), ("10M", 10_485_760.0)];
+
+/// The predicted milliseconds of a step for each of the sizes.
+fn step_times(chip: &Chip, passes: &[&'static PassDesc], compiled: &[Compiled]) -> [f64; 3] {
+    SIZES.map(|(_, particles)| {
+        let seconds: f64 = STEP
+            .iter()
+            .filter_map(|label| {
+                let place = compiled.iter().position(|one| one.label == *label)?;
+                Some(chip.seconds(passes[place], &compiled[place], particles))
+            })
+            .sum();
+        1000.0 * seconds
+    })
+}
 
 /// The report as Markdown. `all` holds the compiled passes of each chip, in the order of `passes`.
 pub fn page(passes: &[&'static PassDesc], all: &[(&Chip, Vec<Compiled>)]) -> String {
@@ -36,17 +50,29 @@ pub fn page(passes: &[&'static PassDesc], all: &[(&Chip, Vec<Compiled>)]) -> Str
     );
     let _ = writeln!(page, "| chip | {} |\n|---|---:|---:|---:|", SIZES.map(|(name, _)| name).join(" | "));
     for (chip, compiled) in all {
-        let times = SIZES.map(|(_, particles)| {
-            let seconds: f64 = STEP
-                .iter()
-                .filter_map(|label| {
-                    let place = compiled.iter().position(|one| one.label == *label)?;
-                    Some(chip.seconds(passes[place], &compiled[place], particles))
-                })
-                .sum();
-            format!("{:.3} ms", 1000.0 * seconds)
-        });
+        let times = step_times(chip, passes, compiled).map(|time| format!("{time:.3} ms"));
         let _ = writeln!(page, "| {} ({}) | {} |", chip.family, chip.product, times.join(" | "));
+    }
+    if let Some((_, compiled)) = all.iter().find(|(chip, _)| chip.family == MEASURED.family) {
+        let predicted = step_times(&MEASURED, passes, compiled);
+        let row = |times: [f64; 3]| times.map(|time| format!("{time:.3} ms")).join(" | ");
+        let ratios: Vec<String> = MEASURED_STEP
+            .iter()
+            .zip(predicted)
+            .map(|(measured, time)| format!("{:.2}", measured / time))
+            .collect();
+        let _ = write!(
+            page,
+            "\nOne product has been measured ([performance](performance.md#an-nvidia-h200)). Its prediction uses the instructions\n\
+             of {}, of another vendor.\n\n\
+             | {} | {} |\n|---|---:|---:|---:|\n| predicted | {} |\n| measured | {} |\n| measured over predicted | {} |\n",
+            MEASURED.family,
+            MEASURED.product,
+            SIZES.map(|(name, _)| name).join(" | "),
+            row(predicted),
+            row(MEASURED_STEP),
+            ratios.join(" | ")
+        );
     }
     page.push_str(
         "\n## Passes\n\n\
