@@ -22,7 +22,7 @@ use crate::state::Ask;
 use crate::task::Task;
 
 /// Endings of the meshes that can be added.
-const MESHES: [&str; 5] = ["obj", "stl", "ply", "gltf", "glb"];
+const MESHES: [&str; 7] = ["obj", "stl", "ply", "gltf", "glb", "vtk", "vtp"];
 
 /// A dialog that is open.
 pub struct Dialog {
@@ -55,9 +55,9 @@ impl Dialog {
             Ask::Scene => Box::pin(scenes(dialog).pick_file()),
             Ask::Run => Box::pin(dialog.pick_folder()),
             Ask::SaveScene => Box::pin(scenes(dialog).set_file_name(name).save_file()),
-            Ask::Body | Ask::Fluid => {
-                Box::pin(dialog.add_filter("Meshes (.obj, .stl, .ply, .gltf, .glb)", &MESHES).pick_file())
-            }
+            Ask::Body | Ask::Fluid => Box::pin(
+                dialog.add_filter("Meshes (.obj, .stl, .ply, .gltf, .glb, .vtk, .vtp)", &MESHES).pick_file(),
+            ),
         };
         let work = move || {
             let picked = splashdown_gpu::block_on(answer).map(|file| file.path().to_owned());

@@ -2,35 +2,10 @@
 
 use std::path::Path;
 
-use splashdown::scene::{MeshShape, MeshSource, Outlet, Scene, SinkRegion};
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 /// Sections without names of files.
 const TEXTS: [&str; 3] = ["scene", "picture", "output"];
-
-/// Resolves the names of files as reading a scene file does, without opening the files.
-pub fn resolve(scene: &mut Scene, folder: &Path) {
-    let resolve = |mesh: &mut MeshSource| {
-        if let MeshShape::File(path) = &mut mesh.shape {
-            *path = folder.join(&path);
-        }
-    };
-    scene.bodies.iter_mut().for_each(|body| resolve(&mut body.mesh));
-    scene.fluid.meshes.iter_mut().for_each(|filled| resolve(&mut filled.mesh));
-    for emitter in &mut scene.emitters {
-        if let Outlet::Mesh(mesh) = &mut emitter.outlet {
-            resolve(mesh);
-        }
-    }
-    for sink in &mut scene.sinks {
-        if let SinkRegion::Mesh(mesh) = &mut sink.region {
-            resolve(mesh);
-        }
-    }
-    for file in &mut scene.fluid.files {
-        file.path = folder.join(&file.path);
-    }
-}
 
 /// Replaces relative names of files in this folder by absolute ones.
 pub fn make_absolute(document: &mut DocumentMut, folder: &Path) {

@@ -25,7 +25,7 @@ pub fn scene(scene: &Scene, orbit: &Orbit) -> Result<String, String> {
     let parse = |text: &str| -> Result<Scene, String> {
         let mut scene = Scene::parse(text, &source).map_err(|errors| problem::of_scene(&errors))?;
         if let Some(folder) = folder {
-            files::resolve(&mut scene, folder);
+            scene.resolve_files(folder);
         }
         Ok(scene)
     };
