@@ -64,7 +64,7 @@ pub fn page(passes: &[&'static PassDesc], all: &[(&Chip, Vec<Compiled>)]) -> Str
         let _ = write!(
             page,
             "\nOne product has been measured ([performance](performance.md#an-nvidia-h200)). Its prediction uses the instructions\n\
-             of {}, of another vendor.\n\n\
+             of {}, a chip of another vendor.\n\n\
              | {} | {} |\n|---|---:|---:|---:|\n| predicted | {} |\n| measured | {} |\n| measured over predicted | {} |\n",
             MEASURED.family,
             MEASURED.product,

@@ -32,11 +32,11 @@ use crate::cells::{self, Cells};
 use crate::coupling::Stage;
 use crate::passes::suspension;
 use crate::scene::{self, DensityMode, Derived, KernelKind, Method, Scene, Solver, SurfaceTension};
-use crate::state::{CARRIED, CARRIED_IMPLICIT, Carried, Extras, Fields, begin};
+use crate::state::{CARRIED, CARRIED_IMPLICIT, Carried, Extras, Fields, begin, end_step};
 
 /// Prefixes of the labels of passes that may run again after the end of a frame without testing its flag. Each computes
-/// its output from its input alone, and with empty cells there is no input. The cells of a suspended step are empty as well. `flow.emit` follows the schedule, which is
-/// empty after the end of a frame. All other passes of a step read the flag.
+/// its output from its input alone, and with empty cells there is no input; the cells of a suspended step are empty as
+/// well. `flow.emit` follows the schedule, which is empty after the end of a frame. All other passes of a step read the flag.
 pub(crate) const REPEATABLE: &[&str] = &[
     "scan.",
     "sort.",
@@ -133,26 +133,12 @@ impl Scheme {
         self.method == Method::Wcsph && !self.has_normals() && !self.is_density_integrated
     }
 
-    /// Begins a frame whose duration is in the buffer `duration`, and counts the particles for the first sort.
-    pub fn begin_frame(&self, cells: &Cells, fields: &Fields) -> Recording {
-        let mut recording = Recording::new("begin frame");
-        let buffers = fields.buffers().and(&cells.buffers());
-        if self.is_implicit() && cells.can_pause() {
-            // An abandoned frame may have a suspended step, which turned the sort off.
-            recording.dispatch(&suspension::resume::VISCOSITY, DispatchSize::Groups(1), &buffers);
-            recording.dispatch(&suspension::resume::PRESSURE, DispatchSize::Groups(1), &buffers);
-        }
-        recording.dispatch(&begin::BEGIN, DispatchSize::Groups(1), &buffers);
-        cells.record_first_count(&mut recording, fields);
-        recording
-    }
-
     /// The largest numbers of iterations of a step.
     pub fn solver_rounds(&self) -> SolverRounds {
         SolverRounds::new(self.max_iterations, self.most_viscous_iterations)
     }
 
-    /// Records one step. [`begin_frame`](Self::begin_frame) precedes the first step of a frame, and
+    /// Records one step. [`begin_frame`] precedes the first step of a frame, and
     /// [`end_step`](crate::state::end_step::record) follows the last step of a submission. Needs a buffer of
     /// accelerations unless the scheme [is fused](Self::is_fused) and there are no couplings.
     pub fn step(
@@ -204,6 +190,25 @@ pub(crate) fn part_of_forces(
     step.acceleration(part);
     step.couple(Stage::BoundaryForces(part));
     step.finish()
+}
+
+/// Begins a frame whose start and duration are in `frame_input`, and counts the particles for the first sort.
+pub fn begin_frame(cells: &Cells, fields: &Fields) -> Recording {
+    let mut recording = Recording::new("begin frame");
+    recording.dispatch(&begin::BEGIN, DispatchSize::Groups(1), &fields.buffers());
+    cells.record_first_count(&mut recording, fields);
+    recording
+}
+
+/// Ends a suspended step by a step with all iterations; without one it has no effect.
+pub(crate) fn end_suspended_step(step: &Recording, cells: &Cells, fields: &Fields) -> Recording {
+    let buffers = fields.buffers().and(&cells.buffers());
+    let mut recording = Recording::new("end of a suspended step");
+    recording.dispatch(&suspension::suspend::HOLD, DispatchSize::Groups(1), &buffers);
+    recording.append(step);
+    recording.append(&end_step::record(fields));
+    recording.dispatch(&suspension::resume::RELEASE, DispatchSize::Groups(1), &buffers);
+    recording
 }
 
 impl From<scene::Sort> for cells::Sort {

@@ -2,6 +2,7 @@
 
 use splashdown_gpu::Rounds;
 
+use crate::Stats;
 use crate::state::StepState;
 
 /// Iterations of the pressure in the first steps on a GPU.
@@ -29,13 +30,20 @@ impl SolverRounds {
         Self { pressure: Rounds::new(most_of_pressure), viscosity: Rounds::new(most_of_viscosity) }
     }
 
-    /// Records few iterations until [`follow`](Self::follow) is called.
-    pub(crate) fn start_with_few(&self) {
-        self.pressure.set(FIRST_OF_PRESSURE);
-        self.viscosity.set(FIRST_OF_VISCOSITY);
+    /// Records the most iterations of a step of the last frame. The numbers follow from the statistics alone: the rounds of
+    /// a run that is resumed from a checkpoint are then those of one that was not interrupted, and so are the steps at
+    /// which its foam changes.
+    pub(crate) fn begin_frame(&self, last: &Stats) {
+        let has_steps = last.steps_in_frame > 0;
+        self.pressure.set(if has_steps { last.most_iterations.max(FEWEST) } else { FIRST_OF_PRESSURE });
+        self.viscosity.set(if has_steps {
+            last.most_viscous_iterations.max(FEWEST)
+        } else {
+            FIRST_OF_VISCOSITY
+        });
     }
 
-    /// Records as many iterations as the steps of a frame needed so far.
+    /// Records as many iterations as the steps of the present frame needed so far.
     pub(crate) fn follow(&self, state: &StepState) {
         if state.steps > 0 {
             self.pressure.set(expected(state.iterations, state.most_iterations, state.steps));
@@ -53,8 +61,8 @@ impl SolverRounds {
     }
 }
 
-/// The most that a step needed. A suspended step costs about as much as nine iterations without effect, so that a few steps
-/// with many iterations do not determine the number.
+/// The most that a step needed, but at most twice the mean and two. Recording more for a few long steps would cost more
+/// than suspending them: a suspension costs about nine iterations without effect.
 fn expected(sum: u32, most: u32, steps: u32) -> u32 {
     most.min(2 * sum / steps + 2).max(FEWEST)
 }
@@ -74,11 +82,15 @@ mod tests {
     fn a_number_follows_the_steps_of_a_frame_up_to_its_largest() {
         let rounds = SolverRounds::new(40, 200);
         assert_eq!(rounds.total(true), 240);
-        rounds.start_with_few();
+        let mut last = Stats::default();
+        rounds.begin_frame(&last);
         assert_eq!((rounds.total(false), rounds.total(true)), (8, 40));
+        (last.steps_in_frame, last.most_iterations, last.most_viscous_iterations) = (3, 12, 20);
+        rounds.begin_frame(&last);
+        assert_eq!((rounds.total(false), rounds.total(true)), (12, 32));
         let mut state: StepState = bytemuck::Zeroable::zeroed();
         rounds.follow(&state);
-        assert_eq!(rounds.total(true), 40, "no step is known");
+        assert_eq!(rounds.total(true), 32, "no step is known");
         (state.steps, state.iterations, state.most_iterations) = (4, 40, 90);
         (state.viscous_iterations, state.most_viscous_iterations) = (400, 120);
         rounds.follow(&state);

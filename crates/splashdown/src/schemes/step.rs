@@ -268,7 +268,8 @@ impl<'a> Step<'a> {
         let iteration = std::mem::replace(&mut self.recorder.recording, step);
         let stopped = Flag::new(self.recorder.fields.viscous, offset_of!(ViscousState, stopped));
         let rounds = self.rounds.viscosity.clone();
-        self.iterate(&iteration, &rounds, stopped, &suspension::resume::VISCOSITY);
+        let passes = [&suspension::resume::VISCOSITY, &suspension::suspend::VISCOSITY];
+        self.iterate(&iteration, &rounds, stopped, passes);
         self.couple(Stage::Viscosity(ViscousStage::Force));
         self.recorder.dispatch_particles(&viscous::finish::FINISH);
     }
@@ -312,19 +313,26 @@ impl<'a> Step<'a> {
         let iteration = std::mem::replace(&mut self.recorder.recording, step);
         let stopped = Flag::new(self.recorder.fields.solve, offset_of!(SolveState, stopped));
         let rounds = self.rounds.pressure.clone();
-        self.iterate(&iteration, &rounds, stopped, &suspension::resume::PRESSURE);
+        let passes = [&suspension::resume::PRESSURE, &suspension::suspend::PRESSURE];
+        self.iterate(&iteration, &rounds, stopped, passes);
         self.recorder.dispatch_particles(&implicit::finish::FINISH);
     }
 
     /// Repeats an iteration of a solver until it has stopped, or suspends the step after the rounds.
-    fn iterate(&mut self, iteration: &Recording, rounds: &Rounds, stopped: Flag, resume: &'static PassDesc) {
+    fn iterate(
+        &mut self,
+        iteration: &Recording,
+        rounds: &Rounds,
+        stopped: Flag,
+        [resume, suspend]: [&'static PassDesc; 2],
+    ) {
         let can_pause = self.recorder.cells.can_pause();
         if can_pause {
             self.recorder.dispatch(resume, DispatchSize::Groups(1));
         }
         self.recorder.recording.repeat(iteration, rounds, stopped);
         if can_pause {
-            self.recorder.dispatch(&suspension::suspend::SUSPEND, DispatchSize::Groups(1));
+            self.recorder.dispatch(suspend, DispatchSize::Groups(1));
         }
     }
 
@@ -370,7 +378,7 @@ impl<'a> Step<'a> {
         // Time does not advance, so that no invocation is needed without particles.
         self.recorder.particles = DispatchSize::Items(self.count);
         let StepRecorder { recording, cells, fields, .. } = &mut self.recorder;
-        recording.append(&self.scheme.begin_frame(cells, fields));
+        recording.append(&super::begin_frame(cells, fields));
         self.sort();
         self.couple(Stage::BoundaryLookup);
         let StepRecorder { recording, fields, .. } = &mut self.recorder;

@@ -15,6 +15,10 @@ use crate::{SimulationError, Stats};
 pub(super) const MOST_STEPS: u32 = 64;
 /// The largest number of iterations of solvers in one submission to a device.
 const MOST_ITERATIONS: u32 = 320;
+/// The cost of a step without its iterations, in iterations.
+const REST_OF_STEP: u32 = 9;
+/// The largest number of steps in one submission to a device with an implicit pressure.
+const MOST_IMPLICIT_STEPS: u32 = 16;
 /// The largest number of steps in one submission on the CPU, and on a GPU if the host has to act between steps. The
 /// CPU executor tests for the end of the frame before each step.
 pub(super) const HOST_STEPS: u32 = 16;
@@ -79,6 +83,7 @@ impl Simulation {
         if !(seconds >= 0.0 && seconds.is_finite()) {
             return Err(SimulationError::BadDuration { seconds });
         }
+        self.end_suspended_step()?;
         if seconds == 0.0 {
             self.frame = None;
             self.stats.steps_in_frame = 0;
@@ -95,6 +100,9 @@ impl Simulation {
         let input = StepState::frame_input(seconds, start, body_speed.min(self.params.fastest_body()));
         self.executor.write(self.fields.frame_input, &input)?;
         self.executor.run(&self.begin)?;
+        if self.end_suspended.is_some() {
+            self.solver_rounds.begin_frame(&self.stats);
+        }
         self.frame =
             Some(FrameInProgress { duration: seconds, submitted: 0, pending: None, state: None, rounds: 0 });
         Ok(())
@@ -137,6 +145,7 @@ impl Simulation {
             action = submission.action();
         }
         frame.submitted += steps;
+        self.may_be_suspended = self.end_suspended.is_some();
         let newest = (frame.submitted, self.executor.request(self.fields.state, 1)?);
         let behind = frame.pending.replace(newest);
         // The host waits for the newest state where nothing can overlap: all expected steps are submitted, the
@@ -149,8 +158,13 @@ impl Simulation {
         if let Some((rounds, readback)) = answer {
             let state = readback.take().await?[0];
             self.stable_dt = state.stable_dt;
-            if self.can_suspend() {
+            if self.end_suspended.is_some() {
                 self.solver_rounds.follow(&state);
+            }
+            // Nothing happens after the end of the frame.
+            let is_newest = rounds == frame.submitted;
+            if state.done == StepState::COMPLETE || is_newest && state.done != StepState::SUSPENDED {
+                self.may_be_suspended = false;
             }
             // A suspended step has not moved anything.
             if let Some(action) = action.filter(|_| state.done != StepState::SUSPENDED) {
@@ -174,7 +188,19 @@ impl Simulation {
         }
         let scheme = Scheme::new(&self.scene);
         let iterations = self.solver_rounds.total(scheme.has_implicit_viscosity());
-        if scheme.is_implicit() { (MOST_ITERATIONS / iterations).max(1) } else { MOST_STEPS }
+        match scheme.is_implicit() {
+            true => (MOST_ITERATIONS / (iterations + REST_OF_STEP)).clamp(1, MOST_IMPLICIT_STEPS),
+            false => MOST_STEPS,
+        }
+    }
+
+    /// Ends the present step if it is suspended, so that the particles may be used.
+    pub(super) fn end_suspended_step(&mut self) -> Result<(), SimulationError> {
+        if let (true, Some(recording)) = (self.may_be_suspended, &self.end_suspended) {
+            self.executor.run(recording)?;
+        }
+        self.may_be_suspended = false;
+        Ok(())
     }
 
     pub(super) async fn end_frame(&mut self, state: StepState) -> Result<Stats, SimulationError> {

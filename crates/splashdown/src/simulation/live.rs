@@ -54,7 +54,7 @@ impl Simulation {
         }
     }
 
-    /// Limits the number of steps in one submission, between 1 and 64. With fewer steps a GPU is free for drawing
+    /// Limits the number of steps in one submission, between 1 and 64; a step that needs many iterations may span several. With fewer steps a GPU is free for drawing
     /// sooner, and [`continue_frame`](Self::continue_frame) on the CPU returns sooner.
     pub fn set_steps_at_once(&mut self, steps: u32) {
         self.most_steps = steps.max(1);

@@ -61,6 +61,10 @@ pub struct Simulation {
     schedule: Schedule,
     /// The iterations that a step of the schedule records.
     solver_rounds: SolverRounds,
+    /// Ends a suspended step; `None` if no step can be suspended.
+    end_suspended: Option<Recording>,
+    /// True from a submission until the host knows that its last step was not suspended.
+    may_be_suspended: bool,
     stats: Stats,
     /// The last known stable time step in seconds.
     stable_dt: f32,

@@ -83,6 +83,7 @@ impl Simulation {
         if self.frame.is_none() {
             return Ok(self.stats);
         }
+        self.end_suspended_step()?;
         let state = self.executor.fetch(self.fields.state).await?[0];
         self.frame = None;
         self.stable_dt = state.stable_dt;

@@ -76,7 +76,7 @@ fn forces(checkpoint: &Checkpoint, executor: Executor, part: Part) -> Forces {
     let (cells, fields) = (&simulation.cells, &simulation.fields);
     let count = simulation.params.particle_count;
     let scheme = Scheme::new(&simulation.scene);
-    let mut recording = scheme.begin_frame(cells, fields);
+    let mut recording = schemes::begin_frame(cells, fields);
     recording.append(&schemes::part_of_forces(scheme, cells, fields, &couplings, count, part));
     let sums = couplings.bodies.unwrap().sums;
     let executor = &mut simulation.executor;

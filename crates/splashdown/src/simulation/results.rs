@@ -49,6 +49,7 @@ impl Simulation {
 
     /// The persistent arrays of all carried quantities. All copies are requested before the host waits for the first.
     pub(super) async fn fetch_carried(&mut self) -> Result<Vec<(&'static Carried, Values)>, SimulationError> {
+        self.end_suspended_step()?;
         let (n, executor) = (self.params.particle_count as usize, &mut self.executor);
         let request = |arrays: &CarriedArrays| Ok((arrays.quantity, arrays.persistent.request(executor, n)?));
         let pending = self.fields.carried.iter().map(request).collect::<Result<Vec<_>, GpuError>>()?;
@@ -147,6 +148,7 @@ impl Simulation {
     /// # Errors
     /// Those of the device.
     pub fn sort(&mut self) -> Result<(), SimulationError> {
+        self.end_suspended_step()?;
         self.frame = None;
         let mut recording = Recording::new("sort");
         recording.append(&self.begin);

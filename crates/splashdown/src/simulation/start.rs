@@ -172,7 +172,7 @@ impl Simulation {
         let probes = Probes::new(&mut executor, scene, bodies.as_ref())?;
         Built::of(scene).release();
         let mut simulation = Self {
-            begin: scheme.begin_frame(&cells, &fields),
+            begin: schemes::begin_frame(&cells, &fields),
             prime: scheme.initial_state(
                 &cells,
                 &fields,
@@ -186,6 +186,8 @@ impl Simulation {
             cells,
             schedule: Schedule::empty(),
             solver_rounds: scheme.solver_rounds(),
+            end_suspended: None,
+            may_be_suspended: false,
             stats: Stats::default(),
             stable_dt,
             frame: None,
@@ -220,11 +222,14 @@ impl Simulation {
             self.fields.make_accelerations(&mut self.executor)?;
         }
         self.solver_rounds = scheme.solver_rounds();
-        if self.can_suspend() {
-            self.solver_rounds.start_with_few();
-        }
         let count = self.params.particle_count;
         let step = scheme.step(&self.cells, &self.fields, &couplings, count, &self.solver_rounds);
+        // A GPU cannot end the iterations of a submission when a solver has stopped.
+        let can_suspend = scheme.is_implicit() && self.executor.gpu().is_some() && self.cells.can_pause();
+        self.end_suspended = can_suspend.then(|| {
+            let whole = scheme.step(&self.cells, &self.fields, &couplings, count, &scheme.solver_rounds());
+            schemes::end_suspended_step(&whole, &self.cells, &self.fields)
+        });
         let mut phases = vec![Phase::Device(step)];
         if self.bodies.as_ref().is_some_and(Bodies::collide) {
             let steps = if scheme.is_implicit() { HOST_IMPLICIT_STEPS } else { HOST_STEPS };
@@ -234,11 +239,6 @@ impl Simulation {
         let done = Flag::new(self.fields.state, offset_of!(StepState, done)).except(schemes::REPEATABLE);
         self.schedule = Schedule::new(phases, &end_step, done, MOST_STEPS);
         Ok(())
-    }
-
-    /// True if steps may be suspended: the executor cannot end iterations when a solver has stopped.
-    pub(super) fn can_suspend(&self) -> bool {
-        self.executor.gpu().is_some() && self.cells.can_pause()
     }
 }
 

@@ -25,6 +25,7 @@ struct StepState {
 
 const COMPLETE: u32 = 1u;
 const SUSPENDED: u32 = 2u;
+const HELD: u32 = 3u;
 
 // True if the step completes its frame. Both numbers are stored, so that all passes agree.
 fn is_last_step(dt: f32, remaining: f32) -> bool {

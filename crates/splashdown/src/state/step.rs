@@ -19,8 +19,8 @@ gpu_struct! {
         time: f32,
         /// The remaining time of the frame in seconds.
         remaining: f32,
-        /// [`COMPLETE`](Self::COMPLETE) once the frame is complete, [`SUSPENDED`](Self::SUSPENDED) while its step is: passes
-        /// have no effect then.
+        /// 0 while steps run; [`COMPLETE`](Self::COMPLETE), [`SUSPENDED`](Self::SUSPENDED) or [`HELD`](Self::HELD) while passes
+        /// have no effect.
         done: u32,
         /// Particles to process: all, or none while passes have no effect.
         run_count: u32,
@@ -64,6 +64,8 @@ impl StepState {
     pub const COMPLETE: u32 = 1;
     /// The value of `done` while a step waits for further iterations ([`passes::suspension`](crate::passes::suspension)).
     pub const SUSPENDED: u32 = 2;
+    /// The value of `done` while no new step may begin.
+    pub const HELD: u32 = 3;
 
     /// The words of the buffer from which a frame begins: its length and its start in seconds, and the largest speed of
     /// scripted bodies in it in m/s.

@@ -16,29 +16,49 @@ const EARLIER: Suspension =
     Suspension { cell_particles: 1, all_particles: 2, scan_len: 3, scan_blocks: 4, count: 5 };
 const COMPLETE: u32 = StepState::COMPLETE;
 const SUSPENDED: u32 = StepState::SUSPENDED;
+const HELD: u32 = StepState::HELD;
 
 pub fn cases() -> Vec<Case> {
-    let mut cases: Vec<Case> = [
-        ("no solver has stopped", 0, [0, 0], true),
-        ("the pressure has not stopped", 0, [0, 1], true),
-        ("the viscosity has not stopped", 0, [1, 0], true),
-        ("both have stopped", 0, [1, 1], false),
-        ("the frame is complete", COMPLETE, [0, 0], false),
-        ("the step is suspended", SUSPENDED, [0, 1], false),
-    ]
-    .map(|(name, done, stopped, suspends)| suspend(name, done, stopped, suspends))
-    .into();
-    for (label, other) in [("suspension.resume.pressure", 1), ("suspension.resume.viscosity", 0)] {
+    let mut cases = Vec::new();
+    for (solver, other) in [("pressure", 1), ("viscosity", 0)] {
+        let stopped = |has_stopped: bool| {
+            let mut stopped = [u32::from(has_stopped); 2];
+            stopped[other] = u32::from(!has_stopped);
+            stopped
+        };
+        for (name, done, has_stopped, suspends) in [
+            ("this solver has not stopped", 0, false, true),
+            ("the other has not stopped", 0, true, false),
+            ("the frame is complete", COMPLETE, false, false),
+            ("the step is suspended", SUSPENDED, false, false),
+        ] {
+            let label = format!("suspension.suspend.{solver}");
+            cases.push(suspend(&label, name, done, stopped(has_stopped), suspends.then_some(SUSPENDED)));
+        }
         for (name, done, has_stopped, resumes) in [
             ("this solver has not stopped", SUSPENDED, false, true),
             ("the other has not stopped", SUSPENDED, true, false),
             ("a step that is not suspended", 0, false, false),
             ("the frame is complete", COMPLETE, false, false),
+            ("the step is held", HELD, false, false),
         ] {
-            let mut stopped = [u32::from(has_stopped); 2];
-            stopped[other] = u32::from(!has_stopped);
-            cases.push(resume(label, name, done, stopped, resumes));
+            let label = format!("suspension.resume.{solver}");
+            cases.push(resume(&label, name, done, stopped(has_stopped), resumes));
         }
+    }
+    for (name, done, holds) in [
+        ("between two steps", 0, true),
+        ("the frame is complete", COMPLETE, false),
+        ("the step is suspended", SUSPENDED, false),
+    ] {
+        cases.push(suspend("suspension.hold", name, done, [1, 1], holds.then_some(HELD)));
+    }
+    for (name, done, releases) in [
+        ("the step is held", HELD, true),
+        ("the step is suspended", SUSPENDED, false),
+        ("the frame is complete", COMPLETE, false),
+    ] {
+        cases.push(resume("suspension.release", name, done, [0, 1], releases));
     }
     cases
 }
@@ -57,7 +77,8 @@ fn solvers([pressure, viscosity]: [u32; 2]) -> [Data; 2] {
     [Data::Solve(solve), Data::Viscous(viscous)]
 }
 
-fn suspend(name: &str, done: u32, stopped: [u32; 2], suspends: bool) -> Case {
+/// `becomes`: the value of `done` afterwards, if the pass has an effect.
+fn suspend(label: &str, name: &str, done: u32, stopped: [u32; 2], becomes: Option<u32>) -> Case {
     let world = World::new(params(2.0), PARTICLES);
     let before = step(done);
     let cells = world.grid.cell_count as usize;
@@ -73,7 +94,7 @@ fn suspend(name: &str, done: u32, stopped: [u32; 2], suspends: bool) -> Case {
     ];
     let mut starts = world.cell_start.clone();
     let mut expected = [Data::Scan(SCAN), Data::State(before), Data::Suspension(EARLIER)];
-    if suspends {
+    if let Some(becomes) = becomes {
         let kept = Suspension {
             cell_particles: starts[cells],
             all_particles: starts[cells + 1],
@@ -82,17 +103,17 @@ fn suspend(name: &str, done: u32, stopped: [u32; 2], suspends: bool) -> Case {
             count: EARLIER.count + 1,
         };
         starts[cells..].fill(0);
-        let suspended = StepState { done: SUSPENDED, run_count: 0, ..before };
+        let suspended = StepState { done: becomes, run_count: 0, ..before };
         expected = [Data::Scan(OFF), Data::State(suspended), Data::Suspension(kept)];
     }
     let [scan, state, suspension] = expected;
-    case("suspension.suspend", name, input, vec![Data::U32(starts), scan, state, suspension], |input| {
-        // A step that should be suspended is complete, and the other way round.
+    case(label, name, input, vec![Data::U32(starts), scan, state, suspension], |input| {
+        // A step that should end here is complete, and the other way round.
         let [_, Data::Solve(solve), Data::Viscous(viscous), _, _, Data::State(state), _] = input else {
             panic!("other buffers")
         };
-        let suspends = state.run_count > 0 && solve.stopped * viscous.stopped == 0;
-        state.run_count = if suspends { 0 } else { 7 };
+        state.done = if state.done == 0 { COMPLETE } else { 0 };
+        state.steps += 1;
         (solve.stopped, viscous.stopped) = (0, 0);
     })
 }
@@ -129,11 +150,8 @@ fn resume(label: &str, name: &str, done: u32, stopped: [u32; 2], resumes: bool) 
     };
     case(label, name, input, expected, |input| {
         // A step that should continue is complete, and the other way round.
-        let [_, _, Data::Solve(solve), Data::Viscous(viscous), _, _, _, Data::State(state)] = input else {
-            panic!("other buffers")
-        };
-        let is_resumed = state.done == SUSPENDED && solve.stopped + viscous.stopped == 1;
-        state.done = if is_resumed { COMPLETE } else { SUSPENDED };
+        let Data::State(state) = &mut input[7] else { panic!("no state") };
+        state.done = if state.done == COMPLETE { SUSPENDED } else { COMPLETE };
         state.steps += 1;
     })
 }

@@ -1,4 +1,5 @@
-//! Continues a suspended step before the iterations of the solver that has not stopped (see the [module](super)).
+//! Continues a suspended step before the iterations of the solver that has not stopped, or allows steps again that were
+//! held (see the [module](super)).
 
 use splashdown_gpu::scan::{self, ScanParams};
 use splashdown_gpu::{PassDesc, bindings};
@@ -29,23 +30,42 @@ pub static PRESSURE: PassDesc = PassDesc {
     imports: &[scan::PARAMS, PARAMS, STATE, SOLVE, VISCOUS, GRID, SUSPENSION],
     entry: "resume",
     workgroup_size: [1, 1, 1],
-    constants: &[("OF_VISCOSITY", 0.0)],
+    constants: &[("OF", 0.0)],
     bindings: ResumeBindings::LIST,
-    cpu: |_, slots| resume::<false>(slots.into()),
+    cpu: |_, slots| {
+        let buffers = ResumeBindings::from(slots);
+        let is_due = buffers.state.done == StepState::SUSPENDED && buffers.solve.stopped == 0;
+        resume(buffers, is_due);
+    },
 };
 
 /// Before the iterations of the viscosity.
 pub static VISCOSITY: PassDesc = PassDesc {
     label: "suspension.resume.viscosity",
-    constants: &[("OF_VISCOSITY", 1.0)],
-    cpu: |_, slots| resume::<true>(slots.into()),
+    constants: &[("OF", 1.0)],
+    cpu: |_, slots| {
+        let buffers = ResumeBindings::from(slots);
+        let is_due = buffers.state.done == StepState::SUSPENDED && buffers.viscous.stopped == 0;
+        resume(buffers, is_due);
+    },
     ..PRESSURE
 };
 
-fn resume<const OF_VISCOSITY: bool>(buffers: ResumeBindings<'_>) {
-    let ResumeBindings { params, grid, solve, viscous, suspension, cell_start, scan_params, state } = buffers;
-    let stopped = if OF_VISCOSITY { viscous.stopped } else { solve.stopped };
-    if state.done != StepState::SUSPENDED || stopped != 0 {
+/// After a step that was held.
+pub static RELEASE: PassDesc = PassDesc {
+    label: "suspension.release",
+    constants: &[("OF", 2.0)],
+    cpu: |_, slots| {
+        let buffers = ResumeBindings::from(slots);
+        let is_due = buffers.state.done == StepState::HELD;
+        resume(buffers, is_due);
+    },
+    ..PRESSURE
+};
+
+fn resume(buffers: ResumeBindings<'_>, is_due: bool) {
+    let ResumeBindings { params, grid, suspension, cell_start, scan_params, state, .. } = buffers;
+    if !is_due {
         return;
     }
     let cells = grid.cell_count as usize;

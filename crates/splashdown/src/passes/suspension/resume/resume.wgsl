@@ -7,13 +7,20 @@
 
 #bindings
 
-// 1 before the iterations of the viscosity, 0 before those of the pressure.
-override OF_VISCOSITY: u32 = 0u;
+// Which step continues here: 0 where the pressure has not stopped, 1 where the viscosity has not, 2 one that was held.
+override OF: u32 = 0u;
+
+fn is_due() -> bool {
+    switch (OF) {
+        case 0u: { return state.done == SUSPENDED && solve.stopped == 0u; }
+        case 1u: { return state.done == SUSPENDED && viscous.stopped == 0u; }
+        default: { return state.done == HELD; }
+    }
+}
 
 @compute @workgroup_size(1)
 fn resume() {
-    let has_stopped = select(solve.stopped, viscous.stopped, OF_VISCOSITY == 1u) != 0u;
-    if (state.done != SUSPENDED || has_stopped) {
+    if (!is_due()) {
         return;
     }
     cell_start[grid.cell_count] = suspension.cell_particles;

@@ -1,4 +1,5 @@
-//! Suspends a step whose pressure or viscosity needs further iterations (see the [module](super)).
+//! Suspends a step whose pressure or viscosity needs further iterations, or keeps the next step from beginning (see the
+//! [module](super)).
 
 use splashdown_gpu::scan::{self, ScanParams};
 use splashdown_gpu::{PassDesc, bindings};
@@ -19,21 +20,45 @@ bindings! {
     }
 }
 
-/// See the module.
-pub static SUSPEND: PassDesc = PassDesc {
-    label: "suspension.suspend",
+/// After the iterations of the pressure.
+pub static PRESSURE: PassDesc = PassDesc {
+    label: "suspension.suspend.pressure",
     wgsl: include_str!("suspend.wgsl"),
     imports: &[scan::PARAMS, STATE, SOLVE, VISCOUS, GRID, SUSPENSION],
     entry: "suspend",
     workgroup_size: [1, 1, 1],
-    constants: &[],
+    constants: &[("OF", 0.0)],
     bindings: SuspendBindings::LIST,
-    cpu: |_, slots| suspend(slots.into()),
+    cpu: |_, slots| {
+        let buffers = SuspendBindings::from(slots);
+        let has_stopped = buffers.solve.stopped != 0;
+        suspend(buffers, has_stopped, StepState::SUSPENDED);
+    },
 };
 
-fn suspend(buffers: SuspendBindings<'_>) {
-    let SuspendBindings { grid, solve, viscous, cell_start, scan_params, state, suspension } = buffers;
-    if state.run_count == 0 || (solve.stopped != 0 && viscous.stopped != 0) {
+/// After the iterations of the viscosity.
+pub static VISCOSITY: PassDesc = PassDesc {
+    label: "suspension.suspend.viscosity",
+    constants: &[("OF", 1.0)],
+    cpu: |_, slots| {
+        let buffers = SuspendBindings::from(slots);
+        let has_stopped = buffers.viscous.stopped != 0;
+        suspend(buffers, has_stopped, StepState::SUSPENDED);
+    },
+    ..PRESSURE
+};
+
+/// Before a step that must not begin.
+pub static HOLD: PassDesc = PassDesc {
+    label: "suspension.hold",
+    constants: &[("OF", 2.0)],
+    cpu: |_, slots| suspend(slots.into(), false, StepState::HELD),
+    ..PRESSURE
+};
+
+fn suspend(buffers: SuspendBindings<'_>, has_stopped: bool, done: u32) {
+    let SuspendBindings { grid, cell_start, scan_params, state, suspension, .. } = buffers;
+    if state.done != 0 || has_stopped {
         return;
     }
     let cells = grid.cell_count as usize;
@@ -45,5 +70,5 @@ fn suspend(buffers: SuspendBindings<'_>) {
         count: suspension.count + 1,
     };
     state.run_count = 0;
-    state.done = StepState::SUSPENDED;
+    state.done = done;
 }
