@@ -4,7 +4,7 @@ use serde::Serialize;
 use splashdown::check::{BodyWidths, Interpretation, Resolution, interpretations, resolution};
 use splashdown::run::ProgressFn;
 use splashdown::sample::Inventory;
-use splashdown::scene::{Derived, Method, Scene, SceneWarning};
+use splashdown::scene::{DensityMode, Derived, Method, Scene, SceneWarning, Solver};
 use splashdown::{Packing, SimulationError, check_particles, memory_forecast_of, neighbour_search_forecast};
 
 use crate::args::CheckArguments;
@@ -165,6 +165,7 @@ fn describe(
         ("particle mass", format!("{:.4e} kg", derived.particle_mass)),
         ("volume", human::volume(derived.volume.into())),
         ("solver", format!("{}, support radius {} m", scene.solver.method, derived.support_radius)),
+        ("suited to", suited_to(&scene.solver).to_owned()),
         (
             "speed",
             format!("at most about {} m/s expected", human::three_digits(derived.reference_speed.into())),
@@ -209,6 +210,25 @@ fn describe(
         rows.retain(|(name, _)| *name != "sound");
     }
     console::table(&rows)
+}
+
+/// What a solver is good for, and the one to choose for other purposes.
+fn suited_to(solver: &Solver) -> &'static str {
+    match (solver.method, solver.density) {
+        (Method::Dfsph, _) => {
+            "pictures, films, viscous liquids, large scenes; for pressures at a point, forces and waves set \
+             accuracy = \"engineering\""
+        }
+        (Method::Wcsph, DensityMode::Continuity) => {
+            "pressures at a point, forces and waves; method = \"dfsph\" takes the least time"
+        }
+        (Method::Wcsph, DensityMode::Summation) => {
+            "comparison; method = \"dfsph\" takes the least time, accuracy = \"engineering\" gives pressures and waves"
+        }
+        (Method::Mueller2003, _) => {
+            "comparison with the thesis of 2012: its pressures mean nothing; method = \"dfsph\" is the usual choice"
+        }
+    }
 }
 
 /// What the expected time is based on.

@@ -1,7 +1,7 @@
 //! The settings of the simulation and of its display.
 
 use egui::{CollapsingHeader, ComboBox, Context, Rect, ScrollArea, Slider, SliderClamping, Ui, vec2};
-use splashdown::scene::{ColourBy, MATERIALS, Method, Solver, SurfaceTension};
+use splashdown::scene::{Choice, ColourBy, MATERIALS, Method, Solver, SurfaceTension};
 use splashdown::surface::MAX_BLOB;
 use splashdown_render::{Axis, ColourMap};
 
@@ -124,9 +124,11 @@ fn solver(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let solver = &mut state.scene.solver;
     let mut changed = false;
     ComboBox::from_label("method").selected_text(name(solver.method)).show_ui(ui, |ui| {
-        for method in [Method::Wcsph, Method::Dfsph, Method::Mueller2003] {
-            if ui.selectable_label(solver.method == method, name(method)).clicked() && solver.method != method
-            {
+        // The default first.
+        for &(method, _, about) in Method::ALL.iter().rev() {
+            let label =
+                ui.selectable_label(solver.method == method, name(method)).on_hover_text(about.trim());
+            if label.clicked() && solver.method != method {
                 solver.select_method(method);
                 changed = true;
             }

@@ -6,11 +6,13 @@ choices! {
     /// The solver of the fluid's equations.
     Method {
         /// Forces of Mueller, Charypar and Gross 2003, the method of the thesis of Figueroa 2012: fast, and more
-        /// compressible.
+        /// compressible. For comparison with that thesis.
         Mueller2003 = "mueller2003",
-        /// Weakly compressible SPH with Tait's equation of state: short explicit steps.
+        /// Weakly compressible SPH with Tait's equation of state: short explicit steps. With accuracy = "engineering" for
+        /// pressures, forces and waves.
         Wcsph = "wcsph",
-        /// Implicit pressure that keeps the density: few large steps, and the least time per simulated second.
+        /// Implicit pressure that keeps the density: few large steps, and the least time per simulated second. For pictures,
+        /// films, viscous liquids and large scenes.
         Dfsph = "dfsph",
     }
     /// The smoothing kernel of `wcsph` and `dfsph` (`mueller2003` brings its own three).
