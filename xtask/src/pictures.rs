@@ -48,6 +48,9 @@ const THUMBNAILS: [(&str, u32); 9] = [
     ("thin-cup", 30),
 ];
 
+/// The scene and the frame that the guide shows with `wcsph` beside the picture with `dfsph`.
+const WITH_BOTH_SOLVERS: (&str, u32) = ("dam-break", 101);
+
 /// The film of the web page for browsers without WebGPU: scene and last frame. With frame 0 it has 52 pictures.
 const FILM: (&str, u32) = ("dam-break-small", 51);
 /// Its pictures per second.
@@ -92,6 +95,9 @@ pub fn run(arguments: &[String]) -> Result<()> {
             }
         }
     }
+    if wanted(WITH_BOTH_SOLVERS.0) {
+        with_wcsph(&binary)?;
+    }
     for (scene, frame) in THUMBNAILS.iter().filter(|(scene, _)| wanted(scene)) {
         let out = format!("out/pictures/{scene}");
         let last = if *scene == FILM.0 { FILM.1 } else { *frame };
@@ -103,6 +109,27 @@ pub fn run(arguments: &[String]) -> Result<()> {
             film(&binary, &out)?;
         }
     }
+    Ok(())
+}
+
+/// Draws a scene of `dfsph` with `wcsph`.
+fn with_wcsph(binary: &Path) -> Result<()> {
+    let (scene, frame) = WITH_BOTH_SOLVERS;
+    let from = process::root().join(format!("scenes/{scene}.toml"));
+    let text = fs::read_to_string(&from).with_context(|| format!("cannot read {}", from.display()))?;
+    let changed = text.replace("method = \"dfsph\"", "method = \"wcsph\"");
+    ensure!(changed != text, "{} does not use dfsph", from.display());
+    let out = format!("out/pictures/{scene}-wcsph");
+    let file = process::root().join(format!("{out}.toml"));
+    fs::create_dir_all(file.with_file_name(""))?;
+    fs::write(&file, changed).with_context(|| format!("cannot write {}", file.display()))?;
+    let mut command = process::command(binary);
+    command.arg("run").arg(&file).args(["--out", &out, "--frames", &frame.to_string(), "--formats", "ply"]);
+    process::run(command.args(["--no-film", "--no-pictures"]))?;
+    let to = format!("docs/pictures/{scene}-wcsph.png");
+    fs::copy(still(binary, &out, frame)?, process::root().join(&to))
+        .with_context(|| format!("cannot write {to}"))?;
+    say(to);
     Ok(())
 }
 

@@ -114,3 +114,51 @@ fn laplacians_match_the_divergence_of_the_gradient() {
     }
     assert!(viscosity_laplacian(0.3) > 0.0 && viscosity_laplacian(1.0) == 0.0);
 }
+
+/// The longest stable step of symplectic Euler for sound on a cubic lattice with summed densities, in half support radii
+/// over the speed of sound. A wave of wave vector k has the frequency c |s|, where s is the sum of V grad W sin(k x)
+/// over the neighbours (Violeau & Leroy 2014 have the limit of many neighbours).
+fn longest_step<K: Kernel>(ratio: f64) -> f64 {
+    const WAVES: i32 = 12;
+    let reach = ratio.ceil() as i32;
+    let coordinates = move || -reach..=reach;
+    let neighbours: Vec<[f64; 4]> = coordinates()
+        .flat_map(|i| coordinates().flat_map(move |j| coordinates().map(move |k| [i, j, k].map(f64::from))))
+        .map(|x| {
+            let q = x.iter().map(|x| x * x).sum::<f64>().sqrt() / ratio;
+            [x[0], x[1], x[2], f64::from(K::g(q as f32)) / ratio.powi(5)]
+        })
+        .collect();
+    let waves = || (0..=WAVES).map(|i| f64::from(i) * std::f64::consts::PI / f64::from(WAVES));
+    let mut highest = 0.0_f64;
+    for wave in waves().flat_map(|a| waves().flat_map(move |b| waves().map(move |c| [a, b, c]))) {
+        let mut sum = [0.0; 3];
+        for [x, y, z, g] in &neighbours {
+            let sine = g * (wave[0] * x + wave[1] * y + wave[2] * z).sin();
+            sum = [sum[0] + sine * x, sum[1] + sine * y, sum[2] + sine * z];
+        }
+        highest = highest.max(sum.iter().map(|s| s * s).sum::<f64>().sqrt());
+    }
+    2.0 / (highest * 0.5 * ratio)
+}
+
+#[test]
+fn default_steps_are_at_most_half_of_the_longest_stable_one() {
+    use crate::scene::{DensityMode, Method, Solver};
+    let limits: Vec<f64> = [1.5, 2.0, 2.5, 3.0, 4.0]
+        .into_iter()
+        .flat_map(|ratio| {
+            [
+                longest_step::<WendlandC2>(ratio),
+                longest_step::<WendlandBlend>(ratio),
+                longest_step::<CubicSpline>(ratio),
+            ]
+        })
+        .collect();
+    let smallest = limits.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!((1.72..1.73).contains(&smallest), "{limits:.3?}");
+    for density in [DensityMode::Summation, DensityMode::Continuity] {
+        let factor = f64::from(Solver::with(Method::Wcsph, density).cfl_factor);
+        assert!(factor <= 0.5 * smallest, "{density:?}: {factor} for {smallest}");
+    }
+}

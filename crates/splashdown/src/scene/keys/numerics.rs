@@ -75,7 +75,7 @@ pub(super) static SOLVER: Table = Table {
         key(
             "cfl_factor",
             a_number(0.01, 1.0, ""),
-            "Time step divided by the time in which sound travels half the support radius; with dfsph, the largest distance in spacings that a particle moves per step. Default: 0.3 with summation, 0.8 with continuity, 0.7 with dfsph.",
+            "Time step divided by the time in which sound travels half the support radius; with dfsph, the largest distance in spacings that a particle moves per step. Default: 0.7; 0.8 with continuity, 0.3 with mueller2003.",
         )
         .also(&["cfl", "courant"]),
         key("max_dt", a_number(1e-9, 1.0, "s"), "Maximum time step. Default: 0.005 s; 0.05 s with dfsph.").also(&[
