@@ -72,7 +72,7 @@ pub(super) fn validated(scene: &Scene, depth: Option<f32>) -> Vec<Validated> {
             error: match solver {
                 Solver::Continuity => "period -0.8 %, 0.6 % of the height lost per period",
                 Solver::Engineering => "period 0.1 %, 0.9 % of the height lost per period",
-                Solver::Summation => "period -12.1 %, 9.3 % of the height lost per period",
+                Solver::Summation => "period -12.1 %, 9.6 % of the height lost per period",
                 Solver::Dfsph => "period -2.7 %, 2.3 % of the height lost per period",
             },
             here: depth,

@@ -19,12 +19,14 @@ const MOST_ITERATIONS: u32 = 320;
 const REST_OF_STEP: u32 = 9;
 /// The largest number of steps in one submission to a device with an implicit pressure.
 const MOST_IMPLICIT_STEPS: u32 = 16;
-/// The largest number of steps in one submission on the CPU, and on a GPU if the host has to act between steps. The
-/// CPU executor tests for the end of the frame before each step.
-pub(super) const HOST_STEPS: u32 = 16;
-/// The same between collisions with an implicit pressure. In one of its long steps a body moves by a good part of a
-/// spacing: later, bodies would have passed into one another, and moving them apart would burst the fluid between them.
-pub(super) const HOST_IMPLICIT_STEPS: u32 = 1;
+/// The largest number of steps in one submission on the CPU, whose executor tests for the end of the frame before each step.
+const CPU_STEPS: u32 = 16;
+/// The largest number of explicit steps between collisions of bodies. At the largest expected speed a body moves by half
+/// a spacing in this time: later, bodies would have passed into one another, and moving them apart would burst the fluid
+/// between them.
+pub(super) const COLLISION_STEPS: u32 = 8;
+/// The same with an implicit pressure: in one of its long steps a body moves by a good part of a spacing.
+pub(super) const IMPLICIT_COLLISION_STEPS: u32 = 1;
 
 /// A frame in progress.
 pub(super) struct FrameInProgress {
@@ -184,7 +186,7 @@ impl Simulation {
     /// The largest number of rounds in one submission.
     fn most_at_once(&self) -> u32 {
         if self.executor.gpu().is_none() {
-            return HOST_STEPS;
+            return CPU_STEPS;
         }
         let scheme = Scheme::new(&self.scene);
         let iterations = self.solver_rounds.total(scheme.has_implicit_viscosity());

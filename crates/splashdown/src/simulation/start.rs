@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use splashdown_gpu::{Executor, Flag, block_on};
 use splashdown_io::Particles;
 
-use super::frame::{HOST_IMPLICIT_STEPS, HOST_STEPS, MOST_STEPS};
+use super::frame::{COLLISION_STEPS, IMPLICIT_COLLISION_STEPS, MOST_STEPS};
 use super::phases::{HostAction, Phase, Schedule};
 use super::{Simulation, packing};
 use crate::bodies::{Bodies, LoadedBody};
@@ -232,7 +232,7 @@ impl Simulation {
         });
         let mut phases = vec![Phase::Device(step)];
         if self.bodies.as_ref().is_some_and(Bodies::collide) {
-            let steps = if scheme.is_implicit() { HOST_IMPLICIT_STEPS } else { HOST_STEPS };
+            let steps = if scheme.is_implicit() { IMPLICIT_COLLISION_STEPS } else { COLLISION_STEPS };
             phases.push(Phase::Host { action: HostAction::ResolveCollisions, steps });
         }
         let end_step = state::end_step::record(&self.fields);

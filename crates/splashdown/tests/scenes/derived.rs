@@ -22,14 +22,14 @@ fn derived_values_of_the_cube() {
     assert!(near(cube.support_radius, 0.1));
     // 998.2 * 0.05^3
     assert!(near(cube.particle_mass, 0.124_775), "{}", cube.particle_mass);
-    // 2 sqrt(9.81 * 0.5), ten times that, 0.3 * 0.05 / 44.294
+    // 2 sqrt(9.81 * 0.5), ten times that, 0.7 * 0.05 / 44.294
     assert!(near(cube.head, 0.5));
     assert!(near(cube.reference_speed, 4.42945));
     assert!(near(cube.sound_speed, 44.2945));
-    assert!(near(cube.dt_estimate, 3.38642e-4), "{}", cube.dt_estimate);
+    assert!(near(cube.dt_estimate, 7.90166e-4), "{}", cube.dt_estimate);
     assert_eq!(cube.dt_limit, "sound");
-    // 0.04 s / dt = 118.1 steps a frame
-    assert_eq!(cube.steps_estimate, 119 * 25);
+    // 0.04 s / dt = 50.6 steps a frame
+    assert_eq!(cube.steps_estimate, 51 * 25);
     // Tait: 998.2 * 44.2945^2 / 7
     assert!(near(cube.stiffness, 279_783.0), "{}", cube.stiffness);
 }

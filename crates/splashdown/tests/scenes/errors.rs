@@ -69,7 +69,7 @@ snapshot!(no_blocks, changed("[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.5
 snapshot!(block_without_list, changed("[[fluid.block]]", "[fluid.block]"));
 snapshot!(block_of_two_shapes, changed("position = [0, 0, 0]", "shape = \"sphere\"\nradius = 0.1"));
 snapshot!(min_dt_above_max_dt, format!("{CUBE}min_dt = 0.01\n"));
-snapshot!(min_dt_above_the_stable_step, format!("{CUBE}sound_speed = 10\nmin_dt = 2e-3\n"));
+snapshot!(min_dt_above_the_stable_step, format!("{CUBE}sound_speed = 10\nmin_dt = 4e-3\n"));
 snapshot!(too_many_frames, changed("duration = 1.0", "duration = 3600").replace("25", "1000"));
 snapshot!(
     contradictions,
