@@ -29,6 +29,7 @@ mod rigid;
 mod scripted;
 mod solid_gradient;
 mod solid_velocity;
+mod stable_step;
 mod types;
 mod viscous;
 
@@ -189,6 +190,8 @@ pub struct Bodies {
     pub unknowns: Buffer<Vec4>,
     /// True if forces move a body.
     has_dynamic: bool,
+    /// The largest [mobility](stable_step::mobility) of a body in m^2/kg.
+    mobility: f32,
     scripts: Buffer<ScriptSample>,
     /// One per scripted body.
     scripted: Vec<ScriptedMotion>,
@@ -225,6 +228,7 @@ impl Bodies {
             states.push(state);
         }
         let rigid = Rigid::new(&loaded, &states, domain);
+        let mobility = largest_mobility(&loaded);
         let scripts = vec![bytemuck::Zeroable::zeroed(); scripted.len().max(1) * SCRIPT_SAMPLES];
         Ok(Self {
             kernels,
@@ -236,6 +240,7 @@ impl Bodies {
             responses: executor.create("responses", 2 * states.len())?,
             unknowns: executor.create("unknowns", viscous::VECTORS * states.len())?,
             has_dynamic: states.iter().any(|state| state.kind == Body::DYNAMIC),
+            mobility,
             scripts: executor.create_from("scripts", &scripts)?,
             scripted,
             meshes: loaded
@@ -277,6 +282,11 @@ impl Bodies {
         }
         executor.write(self.scripts, &samples)?;
         Ok(fastest)
+    }
+
+    /// The constants of a simulation with the limit of an explicit time step by the bodies.
+    pub fn limit_step(&self, params: Params) -> Params {
+        stable_step::limited(params, self.mobility)
     }
 
     /// True if bodies can collide, so that the host has to resolve collisions between batches of steps.
@@ -474,6 +484,16 @@ fn area(mesh: &Mesh) -> f32 {
         0.5 * (b - a).cross(c - a).length()
     };
     mesh.triangles.iter().map(triangle).sum()
+}
+
+/// As [`Bodies::limit_step`], for bodies that are not on a device.
+pub(crate) fn limit_step(params: Params, loaded: &[LoadedBody]) -> Params {
+    stable_step::limited(params, largest_mobility(loaded))
+}
+
+fn largest_mobility(loaded: &[LoadedBody]) -> f32 {
+    let mobility = |body: &LoadedBody| stable_step::mobility(&body.solid.mesh, &body.state);
+    loaded.iter().map(mobility).fold(0.0, f32::max)
 }
 
 /// Appends the distances of a body and its boundary particles, if any.

@@ -138,7 +138,7 @@ impl Solver {
     /// The defaults of a method and a computation of the density.
     pub fn with(method: Method, density: DensityMode) -> Self {
         // The continuity form damps impacts by a limited dissipation. The explicit steps of `wcsph` are at most half of the
-        // longest stable one, 1.72 (kernel/tests.rs); pools at rest are calmer with 0.7 than with 0.8 if the density is summed.
+        // longest stable one, 1.72 (kernel/tests.rs), because fluid that an impact compresses carries sound faster.
         let (negative_pressure, artificial_viscosity, cfl_factor) = match (method, density) {
             (Method::Dfsph, _) => (NegativePressure::Clamp, 0.01, 0.7),
             (Method::Mueller2003, _) => (NegativePressure::Clamp, 0.05, 0.3),

@@ -129,6 +129,9 @@ impl Simulation {
         }
         self.params = schemes::params(&self.scene, host.capacity);
         self.params.sound_speed = host.sound_speed;
+        if let Some(bodies) = &self.bodies {
+            self.params = bodies.limit_step(self.params);
+        }
         self.executor.write(self.fields.params, &[self.params])?;
         if let Some(flow) = &mut self.flow {
             if flow.hash() != host.flow {

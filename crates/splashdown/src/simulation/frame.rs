@@ -21,9 +21,9 @@ const REST_OF_STEP: u32 = 9;
 const MOST_IMPLICIT_STEPS: u32 = 16;
 /// The largest number of steps in one submission on the CPU, whose executor tests for the end of the frame before each step.
 const CPU_STEPS: u32 = 16;
-/// The largest number of explicit steps between collisions of bodies. At the largest expected speed a body moves by half
-/// a spacing in this time: later, bodies would have passed into one another, and moving them apart would burst the fluid
-/// between them.
+/// The largest number of explicit steps between collisions of bodies. At the largest expected speed a body moves by 0.6
+/// spacings in this time at a support of two spacings, and by one at three: later, bodies would have passed into one
+/// another, and moving them apart would burst the fluid between them.
 pub(super) const COLLISION_STEPS: u32 = 8;
 /// The same with an implicit pressure: in one of its long steps a body moves by a good part of a spacing.
 pub(super) const IMPLICIT_COLLISION_STEPS: u32 = 1;

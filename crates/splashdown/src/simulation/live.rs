@@ -104,6 +104,7 @@ impl Simulation {
         // of state, and pressures would burst.
         let params = schemes::params(scene, self.params.particle_count);
         let params = Params { sound_speed: params.sound_speed.max(self.params.sound_speed), ..params };
+        let params = self.bodies.as_ref().map_or(params, |bodies| bodies.limit_step(params));
         self.executor.write(self.fields.params, &[params])?;
         self.params = params;
         self.scene = scene.clone();

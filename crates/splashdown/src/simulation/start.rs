@@ -145,7 +145,7 @@ impl Simulation {
         table: &'static [Carried],
     ) -> Result<Self, SimulationError> {
         let scheme = Scheme::new(scene);
-        let params = schemes::params(scene, capacity);
+        let params = bodies::limit_step(schemes::params(scene, capacity), &loaded);
         let grid = memory::grid_of(scene).ok_or_else(|| SimulationError::TooMany {
             what: "grid cells",
             given: u64::MAX,

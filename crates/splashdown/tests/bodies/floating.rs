@@ -76,7 +76,14 @@ fn a_heavy_body_sinks_to_the_floor_and_comes_to_rest() {
 /// Scenes with a body of thin parts, a seventeenth and a tenth as dense as the fluid, and the largest speed in m/s that the energy of
 /// the fluid allows. They burst within 0.03 s at 100 m/s and more, at any length of the step, when the particles at a body
 /// stopped their approach without regard to how far it yields.
-const LIGHT: [(&str, f32); 2] = [
+const LIGHT: [(&str, f32); 3] = [
+    (
+        "[scene]\nname = \"plate\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [0.4, 0.45, 0.4]\n\
+         [fluid]\nparticle_spacing = 0.025\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.4, 0.25, 0.4]\n\
+         [[body]]\nname = \"plate\"\nmesh = \"cube\"\nscale = [0.15, 0.03, 0.15]\nposition = [0.2, 0.17, 0.2]\n\
+         rotation = [25, 10, 33]\nmotion = \"dynamic\"\ndensity = 50\n[solver]\nmethod = \"wcsph\"\n",
+        2.971,
+    ),
     (
         "[scene]\nname = \"ramp\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [0.4075, 0.4375, 0.225]\n\
          [fluid]\nparticle_spacing = 0.025\ndensity = 3000\n\

@@ -28,7 +28,7 @@ pub(super) static BODY: Table = Table {
         key(
             "density",
             a_number(50.0, 30_000.0, "kg/m^3"),
-            "Density of a dynamic body. With the explicit coupling of wcsph and mueller2003, a body lighter than about a twentieth of the fluid is unstable.",
+            "Density of a dynamic body. The steps of wcsph and mueller2003 are shorter beside light and thin bodies.",
         )
             .default("500.0")
             .also(&["rho"]),
