@@ -72,7 +72,7 @@ fn outer(v: Vec3) -> Mat3 {
 /// The largest eigenvalue of a product of two positive semi-definite matrices, whose eigenvalues are not negative.
 fn largest_eigenvalue(matrix: Mat3) -> f32 {
     // Has a part along every axis of symmetry of a common shape.
-    let mut vector = Vec3::new(1.0, 0.77, 0.59).normalize();
+    let mut vector = Vec3::new(1.0, 0.77, 0.59);
     let mut value = 0.0;
     for _ in 0..ROUNDS {
         let next = matrix * vector;
