@@ -6,9 +6,9 @@ use glam::Vec3;
 
 use super::Sorted;
 use super::columns::Columns;
-use super::vector::reflected_point;
+use super::vector::{difference, dot, reflected_point};
 use crate::boundary::Reflection;
-use crate::simd::{BLOCK, Register, sum};
+use crate::simd::{BLOCK, Register, sums};
 
 /// Coordinate of the padding: beyond every support radius, with a finite square.
 const FAR: f32 = 1e15;
@@ -55,7 +55,7 @@ pub(super) struct Candidates<const F: usize> {
 }
 
 impl<const F: usize> Candidates<F> {
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         Self { columns: [const { Vec::new() }; F], count: 0 }
     }
 
@@ -149,6 +149,32 @@ impl<const F: usize> Candidates<F> {
         self.pad(count);
     }
 
+    /// Packs those of `all` that are within a distance of a point, whose square is `reach2`.
+    #[inline(always)]
+    pub fn pack_near<V: Register>(&mut self, all: &Self, x: [V; 3], reach2: V) {
+        self.reserve(all.count);
+        let from = all.columns();
+        let length = self.columns[0].len();
+        let to = self.columns.each_mut().map(|column| column.as_mut_ptr());
+        assert!(all.count + BLOCK <= length);
+        let mut count = 0;
+        for k in (0..all.count).step_by(V::WIDTH) {
+            let mut values = [V::splat(0.0); F];
+            for (value, column) in values.iter_mut().zip(&from) {
+                // SAFETY: the count is a multiple of the block, and the width divides the block.
+                *value = unsafe { V::load(column.as_ptr().add(k)) };
+            }
+            let d = difference(x, [values[0], values[1], values[2]]);
+            let near = dot(d, d).less_bits(reach2);
+            for (to, value) in to.iter().zip(values) {
+                // SAFETY: at most as many as in `all` were appended, and there is a block after them.
+                unsafe { value.compress(near).store(to.add(count)) };
+            }
+            count += near.count_ones() as usize;
+        }
+        self.pad(count);
+    }
+
     /// Enlarges the columns, if necessary, for a number of particles and the padding.
     #[inline(always)]
     fn reserve(&mut self, particles: usize) {
@@ -233,7 +259,12 @@ impl<const F: usize> Candidates<F> {
     /// The columns, with the padding.
     #[inline(always)]
     pub fn columns(&self) -> [&[f32]; F] {
-        std::array::from_fn(|f| &self.columns[f][..self.count])
+        // Not `from_fn`: the compiler calls it.
+        let mut columns: [&[f32]; F] = [&[]; F];
+        for (column, values) in columns.iter_mut().zip(&self.columns) {
+            *column = &values[..self.count];
+        }
+        columns
     }
 
     /// Number of candidates, with the padding.
@@ -285,18 +316,8 @@ impl<const F: usize> Candidates<F> {
                 unsafe { sums.store(lanes.as_mut_ptr().add(part)) };
             }
         }
-        sums_of(&lanes)
+        sums(&lanes)
     }
-}
-
-/// The sum of every block. Not `map`: the compiler calls it, in code for other registers, which takes a fifth of a pass.
-#[inline(always)]
-fn sums_of<const S: usize>(lanes: &[[f32; BLOCK]; S]) -> [f32; S] {
-    let mut totals = [0.0; S];
-    for (total, lanes) in totals.iter_mut().zip(lanes) {
-        *total = sum(*lanes);
-    }
-    totals
 }
 
 /// Sums in the lanes of a block, for [`Candidates::visit`].
@@ -328,6 +349,6 @@ impl<V: Register, const S: usize> Sums<V, S> {
                 unsafe { sum.store(lanes.as_mut_ptr().add(part * V::WIDTH)) };
             }
         }
-        sums_of(&lanes)
+        sums(&lanes)
     }
 }

@@ -45,7 +45,7 @@ use crate::boundary::Images;
 use crate::cells::Grid;
 pub(crate) use boxes::{BoxPass, for_each_box};
 pub(crate) use lists::{ListedPair, ListedSum, NeighbourLists, Radial};
-pub(crate) use near::{Link, Near, NearImages};
+pub(crate) use near::{Differences, Link, NearImages, Projections, Values};
 pub(crate) use particles::{Added, Outputs, PairSum, for_each};
 pub(crate) use points::{PointSum, sums_at};
 pub(crate) use vector::{

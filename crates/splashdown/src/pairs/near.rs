@@ -4,8 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
 
 use super::lists::INDEX_BITS;
-use super::vectors::{self, Formula, Vectors};
-use crate::simd::Simd;
+use super::vectors::Quad;
 
 /// The signs of the components of an image by the code of its reflection: which axes are reflected.
 const SIGNS: [Vec4; 8] = {
@@ -37,118 +36,121 @@ impl Link {
         (self.place / 2) as usize
     }
 
+    /// A link to particle `index` that contributes nothing.
+    #[inline(always)]
+    pub(super) fn none(index: usize) -> Self {
+        Self { factor: 0.0, place: 2 * index as u32 }
+    }
+
     /// The place of particle `index`, as it is stored between numbers.
     pub fn place_bits(index: usize) -> f32 {
         f32::from_bits(2 * index as u32)
     }
 }
 
-/// The neighbours of particle `i`. The sums contain s = factor (x_i - x_j) for each neighbour j.
-#[derive(Clone, Copy)]
-pub(crate) struct Near<'a> {
-    i: usize,
-    links: &'a [Link],
-    /// All indices are below this number.
-    bound: usize,
-    /// The processor has these registers.
-    simd: Simd,
-}
+/// What is added up over the neighbours j of a particle i. The sums contain s = factor (x_i - x_j).
+pub(crate) trait Formula: Sync {
+    /// The number of vectors: indices must be below it.
+    fn count(&self) -> usize;
 
-impl<'a> Near<'a> {
+    /// The vectors of four particles, from particle `i` on.
+    fn own<Q: Quad>(&self, i: usize) -> [Q; 2];
+
+    /// The contribution of a neighbour to the sum of each particle.
+    ///
     /// # Safety
-    /// The indices of the links must be below `bound`, and the processor must have these registers.
-    pub(super) unsafe fn new(i: usize, links: &'a [Link], bound: usize, simd: Simd) -> Self {
-        Self { i, links, bound, simd }
-    }
+    /// The indices of the links must be below [`count`](Self::count).
+    unsafe fn of<Q: Quad>(&self, own: [Q; 2], links: &[Link; 4]) -> Q;
+}
 
-    /// The sum of (v_i + v_j) s. A point is a position and the value v; the fourth component of the result has no meaning.
-    #[inline]
-    pub fn sum_of_values(self, points: &[Vec4]) -> Vec4 {
-        assert!(self.bound <= points.len());
-        let own = points[self.i] * Vec4::new(1.0, 1.0, 1.0, -1.0);
-        -self.sum(&Values { own, points })
-    }
-
-    /// The sum of the products, component by component, of s and u_i - u_j.
-    #[inline]
-    pub fn sum_of_differences(self, positions: &[Vec4], vectors: &[Vec4]) -> Vec4 {
-        self.sum(&self.differences(positions, vectors))
-    }
-
-    /// The sum of the projections s (s.(u_i - u_j)). The fourth components of the vectors must be zero.
-    #[inline]
-    pub fn sum_of_projections(self, positions: &[Vec4], vectors: &[Vec4]) -> Vec4 {
-        self.sum(&Projections(self.differences(positions, vectors)))
-    }
-
-    #[inline]
-    fn differences<'b>(self, positions: &'b [Vec4], vectors: &'b [Vec4]) -> Differences<'b> {
-        assert!(self.bound <= positions.len() && self.bound <= vectors.len());
-        Differences { own: [positions[self.i], vectors[self.i]], positions, vectors }
-    }
-
-    #[inline]
-    fn sum(self, formula: &impl Formula) -> Vec4 {
-        // SAFETY: the processor has these registers, as the caller of `new` guarantees.
-        unsafe { vectors::sum(self.simd, self.links, formula) }
-    }
-
-    /// The indices of the neighbours.
-    #[cfg(test)]
-    pub fn indices(self) -> impl Iterator<Item = usize> {
-        self.links.iter().map(Link::index)
+/// Four values, from value `i` on; the last one again where there are fewer.
+#[inline(always)]
+fn four<T: Copy>(values: &[T], i: usize) -> [T; 4] {
+    match values[i..].first_chunk() {
+        Some(chunk) => *chunk,
+        None => std::array::from_fn(|k| values[(i + k).min(values.len() - 1)]),
     }
 }
 
-/// (v_i + v_j) s, from points with the value as the fourth component, which is negated in the own one: the difference of two
-/// points then contains the sum of their values.
-struct Values<'a> {
-    own: Vec4,
-    points: &'a [Vec4],
-}
+/// The sum of -(v_i + v_j) s, from points: positions with the value v as the fourth component. That of the result has no
+/// meaning.
+///
+/// The own value is negated, so that the difference of two points contains the sum of their values.
+pub(crate) struct Values<'a>(pub &'a [Vec4]);
 
 impl Formula for Values<'_> {
     #[inline(always)]
-    fn of<Q: Vectors>(&self, links: Q::Links<'_>) -> Q {
-        // SAFETY: all indices are below the number of points: see `Near::sum_of_values`.
-        let d = Q::splat(self.own) - unsafe { Q::gather(links, self.points) };
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    #[inline(always)]
+    fn own<Q: Quad>(&self, i: usize) -> [Q; 2] {
+        let own = Q::load(&four(self.0, i)) * Q::splat(Vec4::new(1.0, 1.0, 1.0, -1.0));
+        [own, own]
+    }
+
+    #[inline(always)]
+    unsafe fn of<Q: Quad>(&self, [own, _]: [Q; 2], links: &[Link; 4]) -> Q {
+        // SAFETY: as for this function.
+        let d = own - unsafe { Q::gather(links, self.0) };
         d * (Q::factors(links) * d.last())
     }
 }
 
-/// The products, component by component, of s and u_i - u_j.
-struct Differences<'a> {
-    own: [Vec4; 2],
-    positions: &'a [Vec4],
-    vectors: &'a [Vec4],
-}
+/// The sum of the products, component by component, of s and u_i - u_j, from pairs of a position and the vector u.
+pub(crate) struct Differences<'a>(pub &'a [[Vec4; 2]]);
 
 impl Differences<'_> {
     /// s, and u_i - u_j.
+    ///
+    /// # Safety
+    /// As for [`Formula::of`].
     #[inline(always)]
-    fn parts<Q: Vectors>(&self, links: Q::Links<'_>) -> [Q; 2] {
-        let [x, u] = self.own.map(Q::splat);
-        // SAFETY: all indices are below the numbers of positions and of vectors: see `Near::differences`.
-        let [x_j, u_j] = unsafe { [Q::gather(links, self.positions), Q::gather(links, self.vectors)] };
+    unsafe fn parts<Q: Quad>(&self, [x, u]: [Q; 2], links: &[Link; 4]) -> [Q; 2] {
+        // SAFETY: as for this function.
+        let [x_j, u_j] = unsafe { Q::gather_pairs(links, self.0) };
         [Q::factors(links) * (x - x_j), u - u_j]
     }
 }
 
 impl Formula for Differences<'_> {
     #[inline(always)]
-    fn of<Q: Vectors>(&self, links: Q::Links<'_>) -> Q {
-        let [s, u] = self.parts::<Q>(links);
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    #[inline(always)]
+    fn own<Q: Quad>(&self, i: usize) -> [Q; 2] {
+        Q::load_pairs(&four(self.0, i))
+    }
+
+    #[inline(always)]
+    unsafe fn of<Q: Quad>(&self, own: [Q; 2], links: &[Link; 4]) -> Q {
+        // SAFETY: as for this function.
+        let [s, u] = unsafe { self.parts(own, links) };
         s * u
     }
 }
 
-/// The projections s (s.(u_i - u_j)).
-struct Projections<'a>(Differences<'a>);
+/// The sum of the projections s (s.(u_i - u_j)). The fourth components of the vectors must be zero.
+pub(crate) struct Projections<'a>(pub Differences<'a>);
 
 impl Formula for Projections<'_> {
     #[inline(always)]
-    fn of<Q: Vectors>(&self, links: Q::Links<'_>) -> Q {
-        let [s, u] = self.0.parts::<Q>(links);
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    #[inline(always)]
+    fn own<Q: Quad>(&self, i: usize) -> [Q; 2] {
+        self.0.own(i)
+    }
+
+    #[inline(always)]
+    unsafe fn of<Q: Quad>(&self, own: [Q; 2], links: &[Link; 4]) -> Q {
+        // SAFETY: as for this function.
+        let [s, u] = unsafe { self.0.parts(own, links) };
         s * (s * u).totals()
     }
 }

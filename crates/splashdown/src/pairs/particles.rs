@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::Sorted;
 use super::candidates::{Candidates, Region};
 use super::columns::Columns;
-use super::vector::reflected_point;
+use super::vector::{reflected_point, splat};
 use crate::boundary::Reflection;
 use crate::simd::{Leaf, Register, Simd, run_with};
 
@@ -18,6 +18,10 @@ use crate::simd::{Leaf, Register, Simd, run_with};
 pub(crate) trait PairSum<const F: usize, const S: usize>: Sync {
     /// The result of a particle.
     type Output: Send;
+
+    /// Whether the formula of a pair takes so long that it is worth while to select the neighbours first: about a quarter of
+    /// the candidates.
+    const IS_LONG: bool = S > 4;
 
     /// The values of particle `j` in the columns. The contribution of a pair must be zero if the
     /// columns after the position are zero, or beyond the support radius.
@@ -107,12 +111,10 @@ pub(super) fn for_each_with<const F: usize, const S: usize, P: PairSum<F, S>>(
     pass: &P,
 ) {
     let columns = &Columns::new(sorted.active_count(), |j| pass.load(j));
-    rows(sorted, outputs)
-        .into_par_iter()
-        .with_max_len(8)
-        .for_each_init(Candidates::new, |candidates, (row, outputs)| {
-            run_with(simd, Row { sorted, columns, candidates, row, outputs, pass })
-        });
+    rows(sorted, outputs).into_par_iter().with_max_len(8).for_each_init(
+        || [const { Candidates::new() }; 2],
+        |candidates, (row, outputs)| run_with(simd, Row { sorted, columns, candidates, row, outputs, pass }),
+    );
 }
 
 /// The rows of cells that contain particles, each with the outputs of its particles.
@@ -148,7 +150,8 @@ pub(super) fn pieces<T, O: Outputs<T>>(
 struct Row<'a, const F: usize, const S: usize, P: PairSum<F, S>, O> {
     sorted: Sorted<'a>,
     columns: &'a Columns<F>,
-    candidates: &'a mut Candidates<F>,
+    /// Those near a cube, and those near a particle.
+    candidates: &'a mut [Candidates<F>; 2],
     row: Range<usize>,
     outputs: O,
     pass: &'a P,
@@ -158,6 +161,8 @@ impl<const F: usize, const S: usize, P: PairSum<F, S>, O: Outputs<P::Output>> Le
     #[inline(always)]
     fn run<V: Register>(self) {
         let Self { sorted, columns, candidates, row, mut outputs, pass } = self;
+        let [candidates, near] = candidates;
+        let reach2 = V::splat(sorted.support_radius * sorted.support_radius);
         let first = sorted.cell_start[row.start] as usize;
         for cube in row.step_by(sorted.grid.slices as usize) {
             let particles = sorted.cube(cube);
@@ -172,7 +177,14 @@ impl<const F: usize, const S: usize, P: PairSum<F, S>, O: Outputs<P::Output>> Le
                 });
             }
             for i in particles {
-                let sums = if pass.wants(i) { candidates.sum::<V, S>(pass.pair::<V>(i)) } else { [0.0; S] };
+                let sums = if !pass.wants(i) {
+                    [0.0; S]
+                } else if P::IS_LONG {
+                    near.pack_near(candidates, splat::<V>(sorted.positions[i]), reach2);
+                    near.sum::<V, S>(pass.pair::<V>(i))
+                } else {
+                    candidates.sum::<V, S>(pass.pair::<V>(i))
+                };
                 outputs.put(i - first, pass.finish(i, sums));
             }
         }

@@ -3,6 +3,7 @@ use rayon::prelude::*;
 
 use super::boxes::for_each_box_with;
 use super::lists::NeighbourLists;
+use super::near::{Differences, NearImages, Projections, Values};
 use super::particles::for_each_with;
 use super::points::sums_at_with;
 use super::*;
@@ -290,21 +291,25 @@ fn sums_of_lists(simd: Simd, case: &Case, images: Images) -> Vec<[Vec4; 4]> {
     let vectors: Vec<Vec4> = case.values.iter().map(|v| Vec4::new(*v, 1.0 - v, 0.5 * v * v, 0.0)).collect();
     let mut lists = NeighbourLists::<WendlandC2>::default();
     let lists = lists.of_with(simd, sorted);
-    let mut out = vec![[Vec4::ZERO; 4]; case.positions.len()];
     let points: Vec<Vec4> =
         case.positions.iter().zip(&case.values).map(|(x, v)| x.xyz().extend(*v)).collect();
-    lists.for_each(sorted, out.as_mut_slice(), |i, near, images| {
+    let of = |formula: &dyn Fn(&mut [[Vec4; 2]])| {
+        let mut out = vec![[Vec4::ZERO; 2]; case.positions.len()];
+        formula(&mut out);
+        out
+    };
+    let result = |i: usize, sum: Vec4, images: NearImages<'_>| {
         let own = vectors[i];
         let of_images = images.iter().map(|(s, sign, j)| s * (own - sign * vectors[j])).sum::<Vec4>();
-        let sums = [
-            near.sum_of_values(&points),
-            near.sum_of_differences(&case.positions, &vectors),
-            near.sum_of_projections(&case.positions, &vectors),
-            of_images,
-        ];
-        sums.map(|sum| sum.xyz().extend(0.0))
-    });
-    out
+        [sum, of_images].map(|sum| sum.xyz().extend(0.0))
+    };
+    let pairs: Vec<_> = case.positions.iter().zip(&vectors).map(|(x, v)| [*x, *v]).collect();
+    let differences = || Differences(&pairs);
+    let values = of(&|out| lists.for_each(sorted, out, &Values(&points), result));
+    let others = of(&|out| lists.for_each(sorted, out, &differences(), result));
+    let projections = of(&|out| lists.for_each(sorted, out, &Projections(differences()), result));
+    let sums = values.into_iter().zip(others).zip(projections);
+    sums.map(|(([v, images], [d, _]), [p, _])| [-v, d, p, images]).collect()
 }
 
 #[test]
@@ -354,10 +359,8 @@ fn every_register_makes_the_same_lists_and_sums() {
 fn lists_follow_the_particles() {
     let mut case = Case::new(1.0);
     let mut lists = NeighbourLists::<WendlandC2>::default();
-    let count = |lists: &NeighbourLists<WendlandC2>, case: &Case| {
-        let mut out = vec![0; case.positions.len()];
-        lists.for_each(case.sorted(), out.as_mut_slice(), |_, near, _| near.indices().count());
-        out
+    let count = |lists: &NeighbourLists<WendlandC2>, case: &Case| -> Vec<usize> {
+        lists.neighbours(case.sorted()).iter().map(Vec::len).collect()
     };
     let before = count(lists.of(case.sorted()), &case);
     let first = before.iter().position(|count| *count > 0).expect("neighbours");
@@ -367,4 +370,22 @@ fn lists_follow_the_particles() {
     let after = count(lists.of(case.sorted()), &case);
     assert_eq!(after[first], listed(&case, first, Images::NONE).len());
     assert_ne!(before, after);
+}
+
+#[test]
+fn a_vector_that_is_not_finite_reaches_the_neighbours_only() {
+    let case = Case::new(1.0);
+    let mut lists = NeighbourLists::<WendlandC2>::default();
+    let lists = lists.of(case.sorted());
+    let neighbours = lists.neighbours(case.sorted());
+    for bad in 0..8 {
+        let vector = |j: usize| if j == bad { Vec4::NAN } else { Vec4::ONE };
+        let pairs: Vec<_> = case.positions.iter().enumerate().map(|(j, x)| [*x, vector(j)]).collect();
+        let mut sums = vec![Vec4::ZERO; pairs.len()];
+        lists.for_each(case.sorted(), sums.as_mut_slice(), &Differences(&pairs), |_, sum, _| sum);
+        for (i, sum) in sums.iter().enumerate() {
+            let reached = i == bad && !neighbours[i].is_empty() || neighbours[i].contains(&bad);
+            assert!(sum.is_finite() != reached, "particle {i}, vector {bad}: {sum}");
+        }
+    }
 }

@@ -1,5 +1,5 @@
-//! Formulas of vectors of four components, evaluated for one neighbour or for four at once in registers of any width, with the
-//! same results to the bit.
+//! Formulas of vectors of four components, evaluated for four particles at once in registers of any width, with the same
+//! results to the bit.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -8,100 +8,60 @@ use glam::{Vec4, Vec4Swizzles};
 use super::near::Link;
 use crate::simd::Simd;
 
-/// One vector, or four.
-pub(super) trait Vectors: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    /// A link for each vector.
-    type Links<'a>: Copy;
-
+/// Four vectors, one for each of four particles.
+pub(crate) trait Quad: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// The same vector in all places.
     fn splat(vector: Vec4) -> Self;
 
+    /// Four vectors from memory.
+    fn load(vectors: &[Vec4; 4]) -> Self;
+
     /// The factor of each link in all components of its vector.
-    fn factors(links: Self::Links<'_>) -> Self;
+    fn factors(links: &[Link; 4]) -> Self;
 
     /// The vector of each link.
     ///
     /// # Safety
     /// The indices of the links must be below the number of vectors.
-    unsafe fn gather(links: Self::Links<'_>, vectors: &[Vec4]) -> Self;
+    unsafe fn gather(links: &[Link; 4], vectors: &[Vec4]) -> Self;
+
+    /// Four pairs of vectors from memory: the first vectors, and the second ones.
+    fn load_pairs(pairs: &[[Vec4; 2]; 4]) -> [Self; 2];
+
+    /// The pair of vectors of each link: the first vectors, and the second ones. A pair is loaded at once.
+    ///
+    /// # Safety
+    /// The indices of the links must be below the number of pairs.
+    unsafe fn gather_pairs(links: &[Link; 4], pairs: &[[Vec4; 2]]) -> [Self; 2];
 
     /// The fourth component of each vector in all of its components.
     fn last(self) -> Self;
 
     /// The sum (x + y) + (z + w) of each vector in all of its components.
     fn totals(self) -> Self;
-}
 
-/// Four vectors, whose sums are independent.
-trait Quad: for<'a> Vectors<Links<'a> = &'a [Link; 4]> {
+    /// The vectors.
     fn parts(self) -> [Vec4; 4];
 }
 
-/// What is added up over links.
-pub(super) trait Formula {
-    /// The contributions of links.
-    fn of<Q: Vectors>(&self, links: Q::Links<'_>) -> Q;
+/// Code that is compiled for every kind of register. `run` and all functions that it calls with registers must be
+/// `#[inline(always)]`: otherwise the values are passed in memory.
+pub(super) trait QuadLeaf {
+    fn run<Q: Quad>(self);
 }
 
-/// The sum of a formula over links.
-///
-/// # Safety
-/// The processor must have these registers.
+/// Runs a leaf with registers of the given kind. Panics if the processor does not support it.
 #[inline]
-pub(super) unsafe fn sum(simd: Simd, links: &[Link], formula: &impl Formula) -> Vec4 {
+pub(super) fn run_with(simd: Simd, leaf: impl QuadLeaf) {
+    assert!(simd.is_available(), "this processor has no {} registers", simd.name());
     match simd {
-        // SAFETY: as for this function.
+        // SAFETY: the assertion above checks that the processor supports them.
         #[cfg(target_arch = "x86_64")]
-        Simd::Avx512 => unsafe { x86::with_avx512(links, formula) },
-        // SAFETY: as for this function.
+        Simd::Avx512 => unsafe { x86::with_avx512(leaf) },
+        // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Simd::Avx2 => unsafe { x86::with_avx2(links, formula) },
-        _ => sum_in::<Four>(links, formula),
-    }
-}
-
-/// Four partial sums, because an addition takes four cycles.
-#[inline(always)]
-fn sum_in<Q: Quad>(links: &[Link], formula: &impl Formula) -> Vec4 {
-    let mut sum = Q::splat(Vec4::ZERO);
-    let (quads, rest) = links.as_chunks::<4>();
-    for quad in quads {
-        sum = sum + formula.of::<Q>(quad);
-    }
-    let mut sums = sum.parts();
-    for (sum, link) in sums.iter_mut().zip(rest) {
-        *sum += formula.of::<Vec4>(link);
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
-}
-
-impl Vectors for Vec4 {
-    type Links<'a> = &'a Link;
-
-    #[inline(always)]
-    fn splat(vector: Vec4) -> Self {
-        vector
-    }
-
-    #[inline(always)]
-    fn factors(link: &Link) -> Self {
-        Self::splat(link.factor)
-    }
-
-    #[inline(always)]
-    unsafe fn gather(link: &Link, vectors: &[Vec4]) -> Self {
-        vectors[link.index()]
-    }
-
-    #[inline(always)]
-    fn last(self) -> Self {
-        self.wwww()
-    }
-
-    #[inline(always)]
-    fn totals(self) -> Self {
-        let pairs = self + self.yxwz();
-        pairs + pairs.zwxy()
+        Simd::Avx2 => unsafe { x86::with_avx2(leaf) },
+        _ => leaf.run::<Four>(),
     }
 }
 
@@ -144,17 +104,20 @@ impl Mul for Four {
     }
 }
 
-impl Vectors for Four {
-    type Links<'a> = &'a [Link; 4];
-
+impl Quad for Four {
     #[inline(always)]
     fn splat(vector: Vec4) -> Self {
         Self([vector; 4])
     }
 
     #[inline(always)]
+    fn load(vectors: &[Vec4; 4]) -> Self {
+        Self(*vectors)
+    }
+
+    #[inline(always)]
     fn factors(links: &[Link; 4]) -> Self {
-        Self(links.each_ref().map(Vec4::factors))
+        Self(links.each_ref().map(|link| Vec4::splat(link.factor)))
     }
 
     #[inline(always)]
@@ -163,17 +126,26 @@ impl Vectors for Four {
     }
 
     #[inline(always)]
+    fn load_pairs(pairs: &[[Vec4; 2]; 4]) -> [Self; 2] {
+        [Self(pairs.map(|[first, _]| first)), Self(pairs.map(|[_, second]| second))]
+    }
+
+    #[inline(always)]
+    unsafe fn gather_pairs(links: &[Link; 4], pairs: &[[Vec4; 2]]) -> [Self; 2] {
+        Self::load_pairs(&links.each_ref().map(|link| pairs[link.index()]))
+    }
+
+    #[inline(always)]
     fn last(self) -> Self {
-        Self(self.0.map(Vec4::last))
+        Self(self.0.map(Vec4Swizzles::wwww))
     }
 
     #[inline(always)]
     fn totals(self) -> Self {
-        Self(self.0.map(Vec4::totals))
+        let pairs = Self(self.0.map(|v| v + v.yxwz()));
+        Self(pairs.0.map(|v| v + v.zwxy()))
     }
-}
 
-impl Quad for Four {
     #[inline(always)]
     fn parts(self) -> [Vec4; 4] {
         self.0
@@ -191,16 +163,16 @@ mod x86 {
 
     use glam::Vec4;
 
-    use super::{Formula, Link, Quad, Vectors, sum_in};
+    use super::{Link, Quad, QuadLeaf};
 
     #[target_feature(enable = "avx2")]
-    pub(super) fn with_avx2(links: &[Link], formula: &impl Formula) -> Vec4 {
-        sum_in::<Two>(links, formula)
+    pub(super) fn with_avx2(leaf: impl QuadLeaf) {
+        leaf.run::<Two>();
     }
 
     #[target_feature(enable = "avx512f")]
-    pub(super) fn with_avx512(links: &[Link], formula: &impl Formula) -> Vec4 {
-        sum_in::<One>(links, formula)
+    pub(super) fn with_avx512(leaf: impl QuadLeaf) {
+        leaf.run::<One>();
     }
 
     /// The vector of a link.
@@ -223,6 +195,18 @@ mod x86 {
     /// One register of four vectors.
     #[derive(Clone, Copy)]
     struct One(__m512);
+
+    /// The pair of a link.
+    ///
+    /// # Safety
+    /// The index of the link must be below the number of pairs.
+    #[inline(always)]
+    unsafe fn pair(link: &Link, pairs: &[[Vec4; 2]]) -> *const f32 {
+        // SAFETY: a reference is valid; volatile as in `vector`.
+        let place = unsafe { std::ptr::read_volatile(&link.place) } as usize;
+        // SAFETY: the place is twice the index, in units of half a pair.
+        unsafe { pairs.as_ptr().cast::<Vec4>().add(place).cast() }
+    }
 
     macro_rules! operator {
         ($name:ident, $function:ident, $of_two:ident, $of_one:ident) => {
@@ -252,6 +236,23 @@ mod x86 {
     operator!(Mul, mul, _mm256_mul_ps, _mm512_mul_ps);
 
     impl Two {
+        /// The first and the second vectors of four pairs.
+        ///
+        /// # Safety
+        /// The addresses must be valid for reads of eight numbers.
+        #[inline(always)]
+        unsafe fn from_pairs(pairs: [*const f32; 4]) -> [Self; 2] {
+            // SAFETY: the processor supports AVX2, because only code below `with_avx2` uses this type; the caller
+            // guarantees the addresses.
+            unsafe {
+                let [a, b, c, d] = pairs.map(|pair| _mm256_loadu_ps(pair));
+                [
+                    Self([_mm256_permute2f128_ps::<0x20>(a, b), _mm256_permute2f128_ps::<0x20>(c, d)]),
+                    Self([_mm256_permute2f128_ps::<0x31>(a, b), _mm256_permute2f128_ps::<0x31>(c, d)]),
+                ]
+            }
+        }
+
         #[inline(always)]
         fn permuted<const ORDER: i32>(self) -> Self {
             // SAFETY: the processor supports AVX2, because a value of this type exists.
@@ -260,6 +261,28 @@ mod x86 {
     }
 
     impl One {
+        /// The first and the second vectors of four pairs.
+        ///
+        /// # Safety
+        /// The addresses must be valid for reads of eight numbers.
+        #[inline(always)]
+        unsafe fn from_pairs(pairs: [*const f32; 4]) -> [Self; 2] {
+            // SAFETY: the processor supports AVX-512, because only code below `with_avx512` uses this type; the caller
+            // guarantees the addresses.
+            unsafe {
+                let two = |first: *const f32, second: *const f32| {
+                    let first = _mm512_castpd256_pd512(_mm256_loadu_pd(first.cast()));
+                    _mm512_castpd_ps(_mm512_insertf64x4::<1>(first, _mm256_loadu_pd(second.cast())))
+                };
+                let [a, b, c, d] = pairs;
+                let (ab, cd) = (two(a, b), two(c, d));
+                [
+                    Self(_mm512_shuffle_f32x4::<0b10_00_10_00>(ab, cd)),
+                    Self(_mm512_shuffle_f32x4::<0b11_01_11_01>(ab, cd)),
+                ]
+            }
+        }
+
         #[inline(always)]
         fn permuted<const ORDER: i32>(self) -> Self {
             // SAFETY: the processor supports AVX-512, because a value of this type exists.
@@ -267,13 +290,19 @@ mod x86 {
         }
     }
 
-    impl Vectors for Two {
-        type Links<'a> = &'a [Link; 4];
-
+    impl Quad for Two {
         #[inline(always)]
         fn splat(vector: Vec4) -> Self {
             // SAFETY: the processor supports AVX2, because only code below `with_avx2` uses this type.
             unsafe { Self([_mm256_setr_m128(vector.into(), vector.into()); 2]) }
+        }
+
+        #[inline(always)]
+        fn load(vectors: &[Vec4; 4]) -> Self {
+            let from = vectors.as_ptr().cast::<f32>();
+            // SAFETY: the processor supports AVX2, because only code below `with_avx2` uses this type; four vectors are
+            // sixteen numbers.
+            unsafe { Self([_mm256_loadu_ps(from), _mm256_loadu_ps(from.add(8))]) }
         }
 
         #[inline(always)]
@@ -303,6 +332,18 @@ mod x86 {
         }
 
         #[inline(always)]
+        fn load_pairs(pairs: &[[Vec4; 2]; 4]) -> [Self; 2] {
+            // SAFETY: a pair has eight numbers.
+            unsafe { Self::from_pairs(pairs.each_ref().map(|pair| pair.as_ptr().cast())) }
+        }
+
+        #[inline(always)]
+        unsafe fn gather_pairs(links: &[Link; 4], pairs: &[[Vec4; 2]]) -> [Self; 2] {
+            // SAFETY: the caller guarantees the indices; a pair has eight numbers.
+            unsafe { Self::from_pairs(links.each_ref().map(|link| pair(link, pairs))) }
+        }
+
+        #[inline(always)]
         fn last(self) -> Self {
             self.permuted::<0b11_11_11_11>()
         }
@@ -312,15 +353,34 @@ mod x86 {
             let pairs = self + self.permuted::<0b10_11_00_01>();
             pairs + pairs.permuted::<0b01_00_11_10>()
         }
+
+        #[inline(always)]
+        fn parts(self) -> [Vec4; 4] {
+            let [ab, cd] = self.0;
+            // SAFETY: the processor supports AVX2, because a value of this type exists.
+            unsafe {
+                [
+                    _mm256_castps256_ps128(ab).into(),
+                    _mm256_extractf128_ps::<1>(ab).into(),
+                    _mm256_castps256_ps128(cd).into(),
+                    _mm256_extractf128_ps::<1>(cd).into(),
+                ]
+            }
+        }
     }
 
-    impl Vectors for One {
-        type Links<'a> = &'a [Link; 4];
-
+    impl Quad for One {
         #[inline(always)]
         fn splat(vector: Vec4) -> Self {
             // SAFETY: the processor supports AVX-512, because only code below `with_avx512` uses this type.
             unsafe { Self(_mm512_broadcast_f32x4(vector.into())) }
+        }
+
+        #[inline(always)]
+        fn load(vectors: &[Vec4; 4]) -> Self {
+            // SAFETY: the processor supports AVX-512, because only code below `with_avx512` uses this type; four vectors
+            // are sixteen numbers.
+            unsafe { Self(_mm512_loadu_ps(vectors.as_ptr().cast())) }
         }
 
         #[inline(always)]
@@ -347,6 +407,18 @@ mod x86 {
         }
 
         #[inline(always)]
+        fn load_pairs(pairs: &[[Vec4; 2]; 4]) -> [Self; 2] {
+            // SAFETY: a pair has eight numbers.
+            unsafe { Self::from_pairs(pairs.each_ref().map(|pair| pair.as_ptr().cast())) }
+        }
+
+        #[inline(always)]
+        unsafe fn gather_pairs(links: &[Link; 4], pairs: &[[Vec4; 2]]) -> [Self; 2] {
+            // SAFETY: the caller guarantees the indices; a pair has eight numbers.
+            unsafe { Self::from_pairs(links.each_ref().map(|link| pair(link, pairs))) }
+        }
+
+        #[inline(always)]
         fn last(self) -> Self {
             self.permuted::<0b11_11_11_11>()
         }
@@ -356,25 +428,7 @@ mod x86 {
             let pairs = self + self.permuted::<0b10_11_00_01>();
             pairs + pairs.permuted::<0b01_00_11_10>()
         }
-    }
 
-    impl Quad for Two {
-        #[inline(always)]
-        fn parts(self) -> [Vec4; 4] {
-            let [ab, cd] = self.0;
-            // SAFETY: the processor supports AVX2, because a value of this type exists.
-            unsafe {
-                [
-                    _mm256_castps256_ps128(ab).into(),
-                    _mm256_extractf128_ps::<1>(ab).into(),
-                    _mm256_castps256_ps128(cd).into(),
-                    _mm256_extractf128_ps::<1>(cd).into(),
-                ]
-            }
-        }
-    }
-
-    impl Quad for One {
         #[inline(always)]
         fn parts(self) -> [Vec4; 4] {
             // SAFETY: the processor supports AVX-512, because a value of this type exists.

@@ -6,7 +6,7 @@ use super::super::{GROUP, GROUPS};
 use super::PredictBindings;
 use crate::boundary::Images;
 use crate::kernel::Kernel;
-use crate::pairs::{NeighbourLists, Sorted};
+use crate::pairs::{NeighbourLists, Sorted, Values};
 
 /// Particles per task.
 const CHUNK: usize = 4096;
@@ -55,10 +55,10 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
         }
     });
     let lists = scratch.get::<NeighbourLists<K>>().of(sorted);
-    lists.for_each(sorted, &mut *predicted, |i, near, images| {
+    lists.for_each(sorted, &mut *predicted, &Values(&points), |i, negative, images| {
         let own = points[i].w;
         let of_image = |(gradient, _, j): (Vec4, Vec4, usize)| (own + points[j].w) * gradient;
-        let sum = near.sum_of_values(&points) + images.iter().map(of_image).sum::<Vec4>();
+        let sum = images.iter().map(of_image).sum::<Vec4>() - negative;
         pass.finish(i, own, pass.factor * sum.xyz())
     });
     scratch.get::<Points>().0 = points;
@@ -67,13 +67,16 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
     tasks.enumerate().for_each(|(task, (predicted, sums))| {
         for (group, (predicted, sum)) in predicted.chunks(GROUP).zip(sums).enumerate() {
             let first = (task * GROUPS + group) * GROUP;
-            *sum = Vec4::ZERO;
-            for (i, predicted) in predicted.iter().enumerate() {
-                let (u, k) = (predicted.xyz(), predicted.w.max(0.0));
-                sum.x += (pass.free_velocities[first + i].xyz() - u).length_squared();
-                sum.y += k * k;
-                sum.z += u.length_squared();
+            let (mut impulses, mut squares) = (Vec4::ZERO, Vec4::ZERO);
+            for (free, predicted) in pass.free_velocities[first..].iter().zip(predicted) {
+                let impulse = free - predicted;
+                // A pressure of -1 marks a nozzle.
+                let positive = predicted.max(Vec4::NEG_INFINITY.with_w(0.0));
+                impulses += impulse * impulse;
+                squares += positive * positive;
             }
+            let total = |v: Vec4| v.x + v.y + v.z;
+            *sum = Vec4::new(total(impulses), squares.w, total(squares), 0.0);
         }
     });
 }

@@ -6,8 +6,16 @@ use super::super::{GROUP, GROUPS};
 use super::{LARGEST_COMPLETED, ResidualBindings, SMALLEST_SURFACE_GRADIENT};
 use crate::boundary::Images;
 use crate::kernel::Kernel;
-use crate::pairs::{NeighbourLists, Outputs, Sorted};
+use crate::pairs::{Differences, NeighbourLists, Outputs, Sorted};
 use crate::state::Params;
+
+/// Particles per task.
+const CHUNK: usize = 4096;
+
+/// The position and the predicted velocity of every particle, which a visit of a neighbour loads at once. Kept from iteration
+/// to iteration, because new memory is slow.
+#[derive(Default)]
+struct Points(Vec<[Vec4; 2]>);
 
 pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buffers: ResidualBindings<'_>) {
     let ResidualBindings {
@@ -32,16 +40,25 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
     let sorted =
         Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
     let n = sorted.active_count();
+    let mut points = std::mem::take(&mut scratch.get::<Points>().0);
+    points.resize(n, [Vec4::ZERO; 2]);
+    points
+        .par_iter_mut()
+        .zip(&positions[..n])
+        .zip(predicted)
+        .with_min_len(CHUNK)
+        .for_each(|((point, x), u)| *point = [*x, *u]);
     let lists = scratch.get::<NeighbourLists<K>>().of(sorted);
     let factor = volume * (scale * scale) * (scale * scale) * scale;
-    lists.for_each(sorted, First(&mut *iterates), |i, near, images| {
+    lists.for_each(sorted, First(&mut *iterates), &Differences(&points), |i, sum, images| {
         let u = predicted[i];
         let of_image = |(gradient, sign, j): (Vec4, Vec4, usize)| gradient * (u - sign * predicted[j]);
         let of_images: Vec4 = images.iter().map(of_image).sum();
-        let sum = near.sum_of_differences(positions, predicted) + of_images;
+        let sum = sum + of_images;
         factor * (sum.x + sum.y + sum.z)
     });
 
+    scratch.get::<Points>().0 = points;
     let update = |i: usize, iterate: &mut Vec4| {
         let excess = iterate.w;
         let (u, k) = (predicted[i].xyz(), predicted[i].w);
@@ -82,7 +99,12 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
 /// What a particle at the free surface lacks of the rest density, for the gradient of the sum of V W over fluid and bodies.
 #[inline(always)]
 fn missing_density(params: &Params, gradient: Vec3) -> f32 {
-    let beyond = (params.support_radius * gradient.length() - SMALLEST_SURFACE_GRADIENT).max(0.0);
+    let squared = params.support_radius * params.support_radius * gradient.length_squared();
+    // Most particles are not at the surface; a root takes longer than the rest of the update.
+    if squared < SMALLEST_SURFACE_GRADIENT * SMALLEST_SURFACE_GRADIENT {
+        return 0.0;
+    }
+    let beyond = (squared.sqrt() - SMALLEST_SURFACE_GRADIENT).max(0.0);
     params.surface_completion * beyond * beyond.sqrt()
 }
 

@@ -11,7 +11,7 @@ use crate::pairs::{
     splat,
 };
 use crate::simd::Register;
-use crate::state::{Params, StepState};
+use crate::state::Params;
 
 pub(super) fn system<K: Kernel + WallKernel>(scratch: &mut Scratch, buffers: SystemBindings<'_>) {
     let SystemBindings {
@@ -32,7 +32,8 @@ pub(super) fn system<K: Kernel + WallKernel>(scratch: &mut Scratch, buffers: Sys
     let images = Images::new(params);
     let pass = System::<K> {
         params,
-        state,
+        dt: state.dt,
+        body: params.body_acceleration(state.time),
         images,
         positions,
         velocities,
@@ -51,7 +52,9 @@ pub(super) fn system<K: Kernel + WallKernel>(scratch: &mut Scratch, buffers: Sys
 
 struct System<'a, K> {
     params: &'a Params,
-    state: &'a StepState,
+    dt: f32,
+    /// Acceleration by gravity and shaking.
+    body: Vec3,
     images: Images,
     positions: &'a [Vec4],
     velocities: &'a [Vec4],
@@ -103,13 +106,13 @@ impl<K: Kernel + WallKernel> ListedSum<7, 8> for System<'_, K> {
 
     #[inline(always)]
     fn finish(&self, i: usize, sums: [f32; 8]) -> Self::Output {
-        let Self { params, state, scale, scale5, .. } = self;
+        let Self { params, scale, scale5, .. } = self;
         let [w, gx, gy, gz, squares, ax, ay, az] = sums;
         let (x, v) = (self.positions[i].xyz(), self.velocities[i].xyz());
         let factor = params.summed_mass / params.rest_density * scale5;
         let images = 1.0 + self.images.sides_near(x, params.support_radius) as f32 / 3.0;
         let density = Vec2::new(params.summed_mass * scale * scale * scale * w, 0.0);
-        let other = params.body_acceleration(state.time) + wall_friction(params, K::WALLS, x, v, state.dt);
+        let other = self.body + wall_friction(params, K::WALLS, x, v, self.dt);
         let acceleration = scale5 * Vec3::new(ax, ay, az) + other;
         let stiffness = (factor * Vec3::new(gx, gy, gz)).extend(images * factor * factor * squares);
         ((density, acceleration.extend(0.0)), stiffness)

@@ -6,7 +6,7 @@ use super::super::pair::{Law, Root};
 use super::super::{GROUP, GROUPS};
 use super::ProductBindings;
 use crate::boundary::Images;
-use crate::pairs::{Near, NearImages, NeighbourLists, Outputs, Sorted};
+use crate::pairs::{Differences, NearImages, NeighbourLists, Outputs, Projections, Sorted};
 
 pub(super) fn product<const BODIES: bool>(scratch: &mut Scratch, buffers: ProductBindings<'_>) {
     let ProductBindings {
@@ -29,19 +29,20 @@ pub(super) fn product<const BODIES: bool>(scratch: &mut Scratch, buffers: Produc
     let n = sorted.active_count();
     let lists = scratch.get::<NeighbourLists<Root>>().of(sorted);
     let pass = Product {
-        positions,
         rate: state.dt * params.viscous_factor / (params.support_radius * params.support_radius),
         residuals: viscous_residuals,
-        preconditioned: (0..n)
+        points: (0..n)
             .into_par_iter()
             .with_min_len(4096)
-            .map(|j| (viscous_residuals[j].w * viscous_residuals[j].xyz()).extend(0.0))
+            .map(|j| [positions[j], (viscous_residuals[j].w * viscous_residuals[j].xyz()).extend(0.0)])
             .collect(),
         friction: params.wall_friction,
         law: Law::new(params.support_radius, params.wall_friction),
     };
-    lists
-        .for_each(sorted, Stored::<BODIES>(viscous_products), |i, near, images| pass.result(i, near, images));
+    let formula = Projections(Differences(&pass.points));
+    lists.for_each(sorted, Stored::<BODIES>(viscous_products), &formula, |i, sum, images| {
+        pass.result(i, sum, images)
+    });
     let products = &viscous_products[..n];
     let tasks = products.par_chunks(GROUP * GROUPS).zip(residuals.par_chunks_mut(GROUPS));
     tasks.enumerate().for_each(|(task, (products, sums))| {
@@ -76,28 +77,26 @@ impl<const ADDS: bool> Outputs<Vec4> for Stored<'_, ADDS> {
 }
 
 struct Product<'a> {
-    positions: &'a [Vec4],
     /// Factor of the sums.
     rate: f32,
     residuals: &'a [Vec4],
-    /// The preconditioned residuals; the fourth component is zero.
-    preconditioned: Vec<Vec4>,
+    /// The positions and the preconditioned residuals; the fourth component of these is zero.
+    points: Vec<[Vec4; 2]>,
     friction: f32,
     law: Law<f32>,
 }
 
 impl Product<'_> {
     #[inline(always)]
-    fn result(&self, i: usize, near: Near<'_>, images: NearImages<'_>) -> Vec4 {
+    fn result(&self, i: usize, of_particles: Vec4, images: NearImages<'_>) -> Vec4 {
         // Where a nozzle determines the motion.
         if self.residuals[i].w == 0.0 {
             return Vec4::ZERO;
         }
-        let own = self.preconditioned[i];
-        let of_particles = near.sum_of_projections(self.positions, &self.preconditioned);
+        let [_, own] = self.points[i];
         let of_images: Vec4 = images
             .iter()
-            .map(|(s, sign, j)| self.of_image(s.xyz(), sign.xyz(), own.xyz(), self.preconditioned[j].xyz()))
+            .map(|(s, sign, j)| self.of_image(s.xyz(), sign.xyz(), own.xyz(), self.points[j][1].xyz()))
             .sum();
         (own + self.rate * (of_particles + of_images)).xyz().extend(0.0)
     }
