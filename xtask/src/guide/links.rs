@@ -10,7 +10,7 @@ use super::PAGES;
 use super::markdown::{self, Document};
 
 /// Documents outside the guide: the Markdown files in these folders.
-const FOLDERS: [&str; 3] = ["", "docs", "crates/splashdown/scenes"];
+const FOLDERS: [&str; 4] = ["", "docs", "docs/design", "crates/splashdown/scenes"];
 
 /// Checks every document and returns the number of links and the broken ones.
 ///
@@ -173,7 +173,7 @@ mod tests {
         fn new(name: &str, page: &str) -> Self {
             let root = std::env::temp_dir().join(format!("splashdown-links-{name}-{}", std::process::id()));
             let _ = fs::remove_dir_all(&root);
-            for folder in ["docs", "crates/splashdown/scenes", PAGES] {
+            for folder in ["docs/design", "crates/splashdown/scenes", PAGES] {
                 fs::create_dir_all(root.join(folder)).unwrap();
             }
             let write = |path: &str, text: &str| fs::write(root.join(path), text).unwrap();
