@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::scene::{DensityMode, Method, Motion, Quantity, Scene};
+use crate::scene::{DensityMode, Method, Motion, Quantity, Scene, SurfaceTension};
 
 /// A support ratio from which a scene counts as one of the wider support.
 const WIDE: f32 = 2.5;
@@ -128,6 +128,21 @@ pub(super) fn validated(scene: &Scene, depth: Option<f32>) -> Vec<Validated> {
             here: depth,
         });
     }
+    if scene.solver.surface_tension == SurfaceTension::Csf {
+        let error = match solver {
+            Solver::Engineering => Some("period 3.5 %"),
+            Solver::Dfsph => Some("the wave does not come back"),
+            // Not measured.
+            Solver::Summation | Solver::Continuity => None,
+        };
+        cases.extend(error.map(|error| Validated {
+            case: "capillary wave",
+            across: "wave length",
+            spacings: 20,
+            error,
+            here: None,
+        }));
+    }
     if scene.fluid.material.viscosity >= VISCOUS && solver == Solver::Dfsph {
         cases.push(Validated {
             case: "viscous flow in a duct",
@@ -157,6 +172,7 @@ mod tests {
             ("accuracy = \"engineering\"", ""),
             ("density = \"continuity\"", ""),
             ("method = \"dfsph\"", "material = \"honey\""),
+            ("accuracy = \"engineering\"\nsurface_tension = \"csf\"", ""),
         ] {
             let text = format!(
                 "[scene]\nname = \"x\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\nparticle_spacing = 0.02\n{more}\n\

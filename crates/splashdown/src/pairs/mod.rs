@@ -14,7 +14,8 @@
 //! bounding box of the targets in the cube are packed into small columns once ([`Candidates`]): on
 //! average 112 of 183 particles, at a support radius of two spacings. Every target then processes
 //! the candidates in whole registers without a branch: particles beyond the support contribute
-//! zero, and the end is padded with particles far away.
+//! zero, and the end is padded with particles far away. Long formulas ([`PairSum::IS_LONG`]) and lists
+//! first pack those candidates that are neighbours of the target, about 30.
 //!
 //! Sums are accumulated in a fixed number of lanes, and the candidates of a target depend only on
 //! the targets in its cube. Results are therefore bit-identical for any number of threads and any

@@ -19,8 +19,8 @@ pub(crate) trait PairSum<const F: usize, const S: usize>: Sync {
     /// The result of a particle.
     type Output: Send;
 
-    /// Whether the formula of a pair takes so long that it is worth while to select the neighbours first: about a quarter of
-    /// the candidates.
+    /// Whether the formula of a pair takes so long that it is worth while to pack the neighbours first, a quarter of the
+    /// candidates. Those at the support radius or beyond are then left out, whatever the formula makes of them.
     const IS_LONG: bool = S > 4;
 
     /// The values of particle `j` in the columns. The contribution of a pair must be zero if the

@@ -47,6 +47,34 @@ impl PairSum<4, 2> for Count<'_> {
     }
 }
 
+/// The same in more sums, so that the neighbours are packed first.
+struct Long<'a>(Count<'a>);
+
+impl PairSum<4, 6> for Long<'_> {
+    type Output = [f32; 2];
+
+    #[inline(always)]
+    fn load(&self, j: usize) -> [f32; 4] {
+        PairSum::load(&self.0, j)
+    }
+
+    #[inline(always)]
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 4]) -> [V; 6] {
+        let pair = PairSum::pair::<V>(&self.0, i);
+        #[inline(always)]
+        move |values| {
+            let [n, sum] = pair(values);
+            [n, sum, n, sum, n, sum]
+        }
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: usize, sums: [f32; 6]) -> [f32; 2] {
+        assert_eq!(sums[..2], sums[4..]);
+        [sums[2], sums[3]]
+    }
+}
+
 /// Particles in a box of 6 x 5 x 4 support radii, sorted: a random cloud, a dense cell with 200,
 /// and empty cells.
 fn cloud() -> (Grid, Vec<u32>, Vec<Vec4>) {
@@ -373,6 +401,35 @@ fn lists_follow_the_particles() {
 }
 
 #[test]
+fn long_formulas_run_on_the_neighbours_only() {
+    const { assert!(<Long<'_> as PairSum<4, 6>>::IS_LONG && !<Count<'_> as PairSum<4, 2>>::IS_LONG) };
+    for images in [Images::NONE, images()] {
+        // The second bound is beyond the support: those neighbours are left out.
+        for factor in [1.0, 1.2] {
+            let case = Case::new(factor);
+            let sorted = case.sorted().with_images(images);
+            let counts = |simd| {
+                let (mut short, mut long) =
+                    (vec![[0.0; 2]; case.positions.len()], vec![[0.0; 2]; case.positions.len()]);
+                for_each_with(simd, sorted, short.as_mut_slice(), &Case::new(1.0).pass());
+                for_each_with(simd, sorted, long.as_mut_slice(), &Long(case.pass()));
+                (short, long)
+            };
+            let (short, long) = counts(Simd::Portable);
+            for (short, long) in short.iter().zip(&long) {
+                assert!(
+                    short[0] == long[0] && (short[1] - long[1]).abs() <= 1e-5 * short[1],
+                    "{short:?}, {long:?}"
+                );
+            }
+            for simd in kinds() {
+                assert!(counts(simd).1 == long, "{} registers give other bits", simd.name());
+            }
+        }
+    }
+}
+
+#[test]
 fn a_vector_that_is_not_finite_reaches_the_neighbours_only() {
     let case = Case::new(1.0);
     let mut lists = NeighbourLists::<WendlandC2>::default();
@@ -384,8 +441,8 @@ fn a_vector_that_is_not_finite_reaches_the_neighbours_only() {
         let mut sums = vec![Vec4::ZERO; pairs.len()];
         lists.for_each(case.sorted(), sums.as_mut_slice(), &Differences(&pairs), |_, sum, _| sum);
         for (i, sum) in sums.iter().enumerate() {
-            let reached = i == bad && !neighbours[i].is_empty() || neighbours[i].contains(&bad);
-            assert!(sum.is_finite() != reached, "particle {i}, vector {bad}: {sum}");
+            let is_reached = neighbours[i].contains(&bad);
+            assert!(i == bad || sum.is_finite() != is_reached, "particle {i}, vector {bad}: {sum}");
         }
     }
 }

@@ -183,6 +183,22 @@ fn a_density_of_a_static_body_gives_a_warning() {
 }
 
 #[test]
+fn tension_with_a_pressure_that_is_not_negative_gives_a_warning() {
+    let warnings = |keys: &str| {
+        let scene = parse(&format!("{CUBE}{keys}\n")).expect("valid");
+        scene.warnings.iter().map(ToString::to_string).collect::<String>()
+    };
+    let warned = warnings("method = \"dfsph\"\nsurface_tension = \"csf\"");
+    assert!(warned.contains("never negative") && warned.contains("accuracy"), "{warned}");
+    for keys in [
+        "accuracy = \"engineering\"\nsurface_tension = \"csf\"",
+        "method = \"dfsph\"\nsurface_tension = \"akinci2013\"",
+    ] {
+        assert!(!warnings(keys).contains("never negative"), "{keys}");
+    }
+}
+
+#[test]
 fn bodies_that_surface_tension_does_not_wet_give_a_warning() {
     let warnings = |model: &str| {
         let text = format!("{CUBE}surface_tension = \"{model}\"\n[[body]]\n{PLAIN}\n");

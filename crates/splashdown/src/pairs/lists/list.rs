@@ -72,7 +72,7 @@ impl List {
         let first_in_group = first + 4 * self.ends.len();
         let longest = self.open.iter().map(Vec::len).max().unwrap_or(0);
         for (k, links) in self.open.iter_mut().enumerate() {
-            // The particle itself: its difference is zero, and what is not finite stays with it.
+            // The particle itself: what is not finite stays with it. The sums of places without a particle are not used.
             links.resize(longest, Link::none((first_in_group + k).min(last)));
         }
         let [a, b, c, d] = &self.open;
@@ -95,13 +95,21 @@ impl List {
 
 /// Computes the results of the particles of a list.
 pub(super) struct Visit<'a, O, F, R> {
-    pub list: &'a List,
-    /// The first particle.
-    pub first: usize,
-    pub outputs: O,
-    /// All indices of the list must be below its number of vectors.
-    pub formula: &'a F,
-    pub result: &'a R,
+    list: &'a List,
+    first: usize,
+    outputs: O,
+    formula: &'a F,
+    result: &'a R,
+}
+
+impl<'a, O, F: Formula, R> Visit<'a, O, F, R> {
+    /// `first` is the first particle.
+    ///
+    /// # Safety
+    /// All indices of the list must be below the number of vectors of the formula.
+    pub unsafe fn new(list: &'a List, first: usize, outputs: O, formula: &'a F, result: &'a R) -> Self {
+        Self { list, first, outputs, formula, result }
+    }
 }
 
 impl<T, O: Outputs<T>, F: Formula, R: Fn(usize, Vec4, NearImages<'_>) -> T> QuadLeaf for Visit<'_, O, F, R> {
@@ -113,7 +121,7 @@ impl<T, O: Outputs<T>, F: Formula, R: Fn(usize, Vec4, NearImages<'_>) -> T> Quad
             let own = formula.own::<Q>(first + 4 * group);
             let mut sum = Q::splat(Vec4::ZERO);
             for links in &list.neighbours[begin..end] {
-                // SAFETY: all indices are below the number of vectors, as the field says.
+                // SAFETY: all indices are below the number of vectors, as the caller of `new` guarantees.
                 sum = sum + unsafe { formula.of(own, links) };
             }
             begin = end;

@@ -1,8 +1,8 @@
 //! Lists of the neighbours of every particle with a factor for each, such as that of the gradient of the kernel, for passes
 //! that visit the same neighbours many times in a step.
 //!
-//! A visit of the candidates tests four times as many particles as there are neighbours, and computes a square root for
-//! each. A list is made in one such visit, which also computes sums; a visit of a list costs a quarter as much. A
+//! A visit of the candidates tests four times as many particles as there are neighbours, and a formula takes a square root.
+//! A list is made in one such visit, which also computes sums; a visit of a list takes a seventh of that. A
 //! neighbour takes 8 bytes: the factor and its index. Reading the list is what a visit waits for, so that subtracting the
 //! positions again costs less than reading their difference. Images behind walls are few and take 16 bytes: the vector, and
 //! bits for index and reflection.
@@ -128,8 +128,9 @@ impl<R: Radial> NeighbourLists<R> {
         assert!(count <= MOST, "{count} particles are more than {MOST}");
         let columns = &Columns::new(count, |j| pass.load(j));
         let pieces = pieces(sorted, outputs, least(sorted));
-        // Lists that are not needed now keep their memory.
+        // Lists that are not needed now are empty and keep their memory.
         self.lists.resize_with(self.lists.len().max(pieces.len()), List::default);
+        self.lists[pieces.len()..].iter_mut().for_each(List::clear);
         self.lists.par_iter_mut().zip(pieces).with_max_len(1).for_each_init(
             || [const { Candidates::new() }; 3],
             |candidates, (list, (cells, outputs))| {
@@ -151,12 +152,13 @@ impl<R: Radial> NeighbourLists<R> {
         formula: &impl Formula,
         result: impl Fn(usize, Vec4, NearImages<'_>) -> T + Sync,
     ) {
-        // All indices of links are below the number of positions.
-        assert!(self.positions.len() <= formula.count());
+        assert!(self.positions.len() <= formula.count(), "{} vectors are too few", formula.count());
         let pieces = pieces(sorted, outputs, least(sorted));
         self.lists.par_iter().zip(pieces).with_max_len(1).for_each(|(list, (cells, outputs))| {
             let first = sorted.cell_start[cells.start] as usize;
-            vectors::run_with(self.simd, Visit { list, first, outputs, formula, result: &result });
+            // SAFETY: all lists were made from `positions`, so that their indices are below this number.
+            let visit = unsafe { Visit::new(list, first, outputs, formula, &result) };
+            vectors::run_with(self.simd, visit);
         });
     }
 

@@ -71,7 +71,7 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
             for (free, predicted) in pass.free_velocities[first..].iter().zip(predicted) {
                 let impulse = free - predicted;
                 // A pressure of -1 marks a nozzle.
-                let positive = predicted.max(Vec4::NEG_INFINITY.with_w(0.0));
+                let positive = predicted.with_w(predicted.w.max(0.0));
                 impulses += impulse * impulse;
                 squares += positive * positive;
             }

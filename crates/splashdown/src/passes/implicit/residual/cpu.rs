@@ -100,7 +100,7 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
 #[inline(always)]
 fn missing_density(params: &Params, gradient: Vec3) -> f32 {
     let squared = params.support_radius * params.support_radius * gradient.length_squared();
-    // Most particles are not at the surface; a root takes longer than the rest of the update.
+    // Most particles are not at the surface, and two roots take long.
     if squared < SMALLEST_SURFACE_GRADIENT * SMALLEST_SURFACE_GRADIENT {
         return 0.0;
     }
