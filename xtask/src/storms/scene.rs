@@ -88,6 +88,8 @@ struct Maker {
     size: [f64; 3],
     gravity: [f64; 3],
     ratio: f64,
+    /// The `cfl_factor` for which the duration is chosen. Where the scene has the default, it is the smallest one, 0.3, which
+    /// keeps the scenes of earlier reports.
     cfl: f64,
     density: f64,
     /// The fastest fluid at the start, the fastest body, nozzle and shaking, in m/s.
@@ -505,7 +507,7 @@ impl Maker {
         let fall: f64 = (0..3).map(|axis| (self.gravity[axis] * self.size[axis]).abs()).sum();
         let energy = fluid * fluid + 2.0 * fall + 4.0 * body * body + nozzle * nozzle + 2.0 * self.surface;
         let speed = (energy.sqrt() + 2.0 * shaking).max(0.02);
-        // About this many steps, by the formula of the default time step.
+        // About this many explicit steps of that factor.
         let sound = 10.0 * ((4.0 * fall + fluid.max(body).max(nozzle).powi(2)).sqrt() + shaking).max(0.01);
         let steps = self.rng.between(900.0, 2600.0);
         let duration = (steps * self.cfl * 0.5 * self.ratio * self.spacing / sound).clamp(0.01, 1.5);
