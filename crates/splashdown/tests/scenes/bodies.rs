@@ -184,17 +184,15 @@ fn a_density_of_a_static_body_gives_a_warning() {
 
 #[test]
 fn tension_with_a_pressure_that_is_not_negative_gives_a_warning() {
-    let warnings = |keys: &str| {
-        let scene = parse(&format!("{CUBE}{keys}\n")).expect("valid");
+    let warnings = |method: &str, model: &str| {
+        let cube = CUBE.replace("method = \"wcsph\"", method);
+        let scene = parse(&format!("{cube}surface_tension = \"{model}\"\n")).expect("valid");
         scene.warnings.iter().map(ToString::to_string).collect::<String>()
     };
-    let warned = warnings("method = \"dfsph\"\nsurface_tension = \"csf\"");
+    let warned = warnings("method = \"dfsph\"", "csf");
     assert!(warned.contains("never negative") && warned.contains("accuracy"), "{warned}");
-    for keys in [
-        "accuracy = \"engineering\"\nsurface_tension = \"csf\"",
-        "method = \"dfsph\"\nsurface_tension = \"akinci2013\"",
-    ] {
-        assert!(!warnings(keys).contains("never negative"), "{keys}");
+    for (method, model) in [("accuracy = \"engineering\"", "csf"), ("method = \"dfsph\"", "akinci2013")] {
+        assert!(!warnings(method, model).contains("never negative"), "{method}, {model}");
     }
 }
 
