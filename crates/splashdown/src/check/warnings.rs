@@ -50,8 +50,8 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
     check_viscosity(scene, solver, derived);
     check_room(scene, root, solver);
     if scene.solver.surface_tension == SurfaceTension::Csf && scene.solver.method == Method::Dfsph {
-        let message = "the pressure of dfsph is never negative: with surface_tension = \"csf\" drops are \
-                       right, and water under a trough or in a neck tears"
+        let message = "the pressure of dfsph is never negative: with surface_tension = \"csf\" drops hold \
+                       together, and water under a trough or in a neck tears"
             .to_owned();
         let hint = "for capillary waves, bridges and thin threads set accuracy = \"engineering\"";
         solver.warn("surface_tension", message, hint);
