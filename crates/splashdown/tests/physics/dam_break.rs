@@ -1,4 +1,4 @@
-//! The collapse of a column of water twice as high as wide, compared with Martin & Moyce 1952.
+//! The collapse of a column of water, twice as high as wide or square, compared with Martin & Moyce 1952.
 //!
 //! A slab eight spacings thick between free-slip walls represents two dimensions. The front is the 98th percentile of x
 //! below y = 0.1 a; the height is that of the column at the wall. The time of the experiment starts when a diaphragm
@@ -16,22 +16,19 @@ const GRAVITY: f64 = 9.81;
 /// The column's width in metres.
 const A: f64 = 0.05715;
 
-static CASE: Case = Case {
-    name: "collapsing column",
-    across: "width",
-    sizes: &[16, 20, 40],
-    variants: &[
-        Variant::new("summation", "method = \"wcsph\""),
-        Variant::new(
-            "continuity",
-            "method = \"wcsph\"\ndensity = \"continuity\"\nartificial_viscosity = 0.1",
-        ),
-        Variant::new("dfsph", "method = \"dfsph\""),
-        Variant::extra("engineering", "accuracy = \"engineering\""),
-        CONTROL,
-    ],
-};
-pub const CASES: &[&Case] = &[&CASE];
+const SIZES: &[u32] = &[16, 20, 40];
+const VARIANTS: &[Variant] = &[
+    Variant::new("summation", "method = \"wcsph\""),
+    Variant::new("continuity", "method = \"wcsph\"\ndensity = \"continuity\"\nartificial_viscosity = 0.1"),
+    Variant::new("dfsph", "method = \"dfsph\""),
+    Variant::extra("engineering", "accuracy = \"engineering\""),
+    CONTROL,
+];
+
+static CASE: Case = Case { name: "collapsing column", across: "width", sizes: SIZES, variants: VARIANTS };
+static SQUARE: Case =
+    Case { name: "collapsing square column", across: "width", sizes: SIZES, variants: VARIANTS };
+pub const CASES: &[&Case] = &[&CASE, &SQUARE];
 
 /// Largest time shift, in units of T.
 const SHIFT: f64 = 0.2;
@@ -49,6 +46,8 @@ fn measured(which: &str) -> Series {
 }
 
 struct Column {
+    /// Height over width, n^2 in the paper.
+    aspect: u32,
     /// Number of particles across the column's width.
     across: u32,
     solver: &'static str,
@@ -57,7 +56,7 @@ struct Column {
     until: f64,
 }
 
-/// Simulation results: the front over T = t sqrt(2 g / a), the height over T = t sqrt(g / a).
+/// Simulation results: the front over T = t sqrt(n^2 g / a), the height over T = t sqrt(g / a).
 struct Collapse {
     front: Series,
     height: Series,
@@ -86,21 +85,22 @@ impl Column {
             {}
             "#,
             -self.gravity,
-            2.0 * A,
+            f64::from(self.aspect) * A,
             self.solver
         ));
         let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
-        assert_eq!(simulation.stats().particles, 16 * self.across * self.across);
+        assert_eq!(simulation.stats().particles, 8 * self.aspect * self.across.pow(2));
         // Time is scaled by the earth's gravity, even if the simulated gravity differs.
         let unit = (A / GRAVITY).sqrt();
         let frames = (self.until / 0.02).ceil() as u32;
+        let aspect = f64::from(self.aspect);
         let mut collapse = Collapse { front: Vec::new(), height: Vec::new() };
         for _ in 0..frames {
             let stats = simulation.advance((0.02 * unit) as f32).unwrap();
             let particles = simulation.particles().unwrap();
             let tau = stats.time / unit;
-            collapse.front.push((tau * 2.0_f64.sqrt(), front(&particles) / A));
-            collapse.height.push((tau, height(&particles, spacing) / (2.0 * A)));
+            collapse.front.push((tau * aspect.sqrt(), front(&particles) / A));
+            collapse.height.push((tau, height(&particles, spacing) / (aspect * A)));
         }
         let stats = simulation.stats();
         assert_eq!((stats.escaped, stats.non_finite, stats.wall_corrections), (0, 0, 0), "{stats:?}");
@@ -144,9 +144,14 @@ fn front_error(simulated: &Series, measured: &Series) -> (f64, f64) {
     shifts.map(|shift| (error(shift), shift)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
 }
 
-/// The slope of a straight line through the points after T = 1.4, where the speed of the front is constant.
-fn slope(series: impl Iterator<Item = (f64, f64)>) -> f64 {
-    let points: Series = series.filter(|(t, _)| *t > 1.4).collect();
+/// The time from which the speed of the front is constant, in units of its T: sqrt(a / g).
+fn steady(aspect: u32) -> f64 {
+    if aspect == 2 { 1.4 } else { 1.0 }
+}
+
+/// The slope of a straight line through the points after this time.
+fn slope(series: impl Iterator<Item = (f64, f64)>, after: f64) -> f64 {
+    let points: Series = series.filter(|(t, _)| *t > after).collect();
     let n = points.len() as f64;
     let (t, z) = points.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0 / n, sum.1 + p.1 / n));
     let above: f64 = points.iter().map(|p| (p.0 - t) * (p.1 - z)).sum();
@@ -161,15 +166,17 @@ fn height_error(simulated: &Series, measured: &Series, until: f64) -> f64 {
 
 fn compare(figures: &mut Figures, column: &Column) -> Collapse {
     let collapse = column.simulate();
-    let front = measured("front");
+    let square = if column.aspect == 1 { "square " } else { "" };
+    let front = measured(&format!("{square}front"));
     let (error, shift) = front_error(&collapse.front, &front);
     figures.error("front, rms relative", error);
     figures.report("best time shift T", shift);
-    let experiment = slope(front.iter().copied());
+    let after = steady(column.aspect);
+    let experiment = slope(front.iter().copied(), after);
     let inside = front.iter().map(|&(t, _)| (t, at(&collapse.front, t + shift)));
-    let ratio = slope(inside) / experiment;
+    let ratio = slope(inside, after) / experiment;
     figures.measure("speed of the front over the measured speed", ratio);
-    let error = height_error(&collapse.height, &measured("height"), column.until);
+    let error = height_error(&collapse.height, &measured(&format!("{square}height")), column.until);
     figures.error("height, rms over the initial height", error);
     figures.plot("Front (dots: measured)", ["T", "front over width"], &front, &collapse.front);
     collapse
@@ -178,12 +185,8 @@ fn compare(figures: &mut Figures, column: &Column) -> Collapse {
 #[test]
 fn a_collapsing_column_agrees_with_martin_and_moyce() {
     CASE.run(|variant, across, figures| {
-        let column = Column {
-            across,
-            solver: variant.keys,
-            gravity: GRAVITY,
-            until: if across < 20 { 2.5 } else { 4.2 },
-        };
+        let until = if across < 20 { 2.5 } else { 4.2 };
+        let column = Column { aspect: 2, across, solver: variant.keys, gravity: GRAVITY, until };
         let collapse = compare(figures, &column);
         if across == 40 {
             // Convergence: the front differs less between 20 and 40 particles than between 10 and 20.
@@ -202,14 +205,34 @@ fn a_collapsing_column_agrees_with_martin_and_moyce() {
 }
 
 #[test]
-fn half_the_gravity_is_detected() {
-    let column = Column { across: 10, solver: CASE.variants[0].keys, gravity: 0.5 * GRAVITY, until: 2.5 };
-    let mut figures = Figures::new(&CASE, "control", 10);
+fn a_collapsing_square_column_agrees_with_martin_and_moyce() {
+    SQUARE.run(|variant, across, figures| {
+        compare(figures, &Column { aspect: 1, across, solver: variant.keys, gravity: GRAVITY, until: 4.4 });
+    });
+}
+
+/// Compares a collapse with half of the gravity.
+fn weak(case: &'static Case, column: &Column, names: [&str; 2]) {
+    let mut figures = Figures::new(case, CONTROL.name, column.across);
     let collapse = column.simulate();
-    let (front, height) = (measured("front"), measured("height"));
+    let [front, height] = names.map(measured);
     figures.measure("front, rms relative", front_error(&collapse.front, &front).0);
-    let ratio = slope(collapse.front.iter().copied().filter(|(t, _)| *t < 3.33)) / slope(front.into_iter());
+    let after = steady(column.aspect);
+    let last = front[front.len() - 1].0;
+    let ratio = slope(collapse.front.iter().copied().filter(|(t, _)| *t < last), after)
+        / slope(front.into_iter(), after);
     figures.measure("relative error of the speed of the front", (ratio - 1.0).abs());
-    figures.measure("height, rms over the initial height", height_error(&collapse.height, &height, 2.5));
+    figures.measure(
+        "height, rms over the initial height",
+        height_error(&collapse.height, &height, column.until),
+    );
     figures.close();
+}
+
+#[test]
+fn half_the_gravity_is_detected() {
+    let column =
+        Column { aspect: 2, across: 10, solver: CASE.variants[0].keys, gravity: 0.5 * GRAVITY, until: 2.5 };
+    weak(&CASE, &column, ["front", "height"]);
+    weak(&SQUARE, &Column { aspect: 1, until: 3.4, ..column }, ["square front", "square height"]);
 }

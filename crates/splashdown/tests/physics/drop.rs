@@ -121,6 +121,8 @@ fn period(curve: &Series) -> Option<f64> {
 
 #[test]
 fn a_drop_has_the_pressure_of_laplace_and_the_period_of_rayleigh() {
+    // The variant, radius and period of earlier drops, from small to large.
+    let mut earlier: Vec<(&str, f64, f64)> = Vec::new();
     CASE.run(|variant, across, figures| {
         let mut drop = Drop::at_rest(across, variant.keys, TENSION);
         let rest = drop.simulation.particles().unwrap();
@@ -134,10 +136,23 @@ fn a_drop_has_the_pressure_of_laplace_and_the_period_of_rayleigh() {
         figures.measure("rms speed at rest times period over R", speed);
         let curve = drop.oscillate(3.0);
         let figure = "period over that of Rayleigh, minus one";
+        let growth = "period over R^1.5, over that of the next smaller drop, minus one";
         match period(&curve) {
-            Some(found) => figures.error(figure, found / drop.period - 1.0),
+            Some(found) => {
+                figures.error(figure, found / drop.period - 1.0);
+                match earlier.iter().rfind(|(name, ..)| *name == variant.name) {
+                    Some((_, radius, smaller)) => {
+                        figures.error(growth, found / smaller / (drop.radius / radius).powf(1.5) - 1.0);
+                    }
+                    None => figures.omit(growth),
+                }
+                earlier.push((variant.name, drop.radius, found));
+            }
             // A model for pictures need not oscillate.
-            None if variant.name == "akinci2013" => figures.omit(figure),
+            None if variant.name == "akinci2013" => {
+                figures.omit(figure);
+                figures.omit(growth);
+            }
             None => panic!("{}: the drop does not oscillate", variant.name),
         }
         let start = curve[0].1;

@@ -12,20 +12,30 @@ const RADIUS: f32 = 0.08;
 const SIDE: f32 = 0.56;
 
 const CONTINUITY: &str = "density = \"continuity\"\nartificial_viscosity = 0.05";
+const ENGINEERING: &str = "accuracy = \"engineering\"";
+const DFSPH: &str = "method = \"dfsph\"";
 
 /// Floating balls need 12 spacings per diameter.
 static DRAFT: Case = Case {
     name: "floating ball, draft",
     across: "diameter",
     sizes: &[12, 16],
-    variants: &[Variant::extra("continuity", CONTINUITY)],
+    variants: &[
+        Variant::extra("continuity", CONTINUITY),
+        Variant::extra("engineering", ENGINEERING),
+        Variant::extra("dfsph", DFSPH),
+    ],
 };
 /// At eight spacings the gap around the ball is a sixth of its radius (0.898 measured), so the gate applies from 12.
 static HEAVE: Case = Case {
     name: "floating ball, heave",
     across: "diameter",
     sizes: &[8, 12, 16],
-    variants: &[Variant::new("continuity", CONTINUITY)],
+    variants: &[
+        Variant::new("continuity", CONTINUITY),
+        Variant::extra("engineering", ENGINEERING),
+        Variant::extra("dfsph", DFSPH),
+    ],
 };
 pub const CASES: &[&Case] = &[&DRAFT, &HEAVE];
 

@@ -8,6 +8,7 @@ mod accelerated;
 mod capillary;
 mod cases;
 mod conservation;
+mod cube_drop;
 mod dam_break;
 mod disorder;
 mod drag;
@@ -52,6 +53,7 @@ const CASES: &[&[&cases::Case]] = &[
     accelerated::CASES,
     capillary::CASES,
     conservation::CASES,
+    cube_drop::CASES,
     dam_break::CASES,
     drag::CASES,
     drop::CASES,

@@ -31,7 +31,12 @@ static ROLL: Case = Case {
     name: "roll decay of a box",
     across: "draught",
     sizes: &[4, 6, 8],
-    variants: &[Variant::extra("continuity", CONTINUITY), CONTROL],
+    variants: &[
+        Variant::extra("continuity", CONTINUITY),
+        Variant::extra("engineering", "accuracy = \"engineering\""),
+        Variant::extra("dfsph", "method = \"dfsph\""),
+        CONTROL,
+    ],
 };
 pub const CASES: &[&Case] = &[&ROLL];
 

@@ -15,21 +15,31 @@ use super::executor;
 use super::figures::{Figures, Series};
 
 const DEPTH: f64 = 0.55;
-/// The solver instead of that of the scene.
+/// Solvers instead of that of the scene.
 const DFSPH: &str = "method = \"dfsph\"\n";
+const ENGINEERING: &str = "accuracy = \"engineering\"\n";
 
 /// At a spacing of 5 cm, 11 across the depth, a gauge is 30 cm wide, which the front passes in a tenth of a second.
 static HEIGHTS: Case = Case {
     name: "SPHERIC test 2, heights",
     across: "depth",
     sizes: &[11, 14, 20],
-    variants: &[Variant::new("continuity", ""), Variant::extra("dfsph", DFSPH), CONTROL],
+    variants: &[
+        Variant::new("continuity", ""),
+        Variant::extra("engineering", ENGINEERING),
+        Variant::extra("dfsph", DFSPH),
+        CONTROL,
+    ],
 };
 static PRESSURES: Case = Case {
     name: "SPHERIC test 2, pressures",
     across: "depth",
     sizes: &[30],
-    variants: &[Variant::extra("continuity", ""), Variant::extra("dfsph", DFSPH)],
+    variants: &[
+        Variant::extra("continuity", ""),
+        Variant::extra("engineering", ENGINEERING),
+        Variant::extra("dfsph", DFSPH),
+    ],
 };
 pub const CASES: &[&Case] = &[&HEIGHTS, &PRESSURES];
 

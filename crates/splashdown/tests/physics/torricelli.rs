@@ -23,10 +23,14 @@ static CASE: Case = Case {
     name: "Torricelli",
     across: "slit",
     sizes: &[8, 12, 16],
-    variants: &[Variant::new(
-        "continuity",
-        "density = \"continuity\"\nartificial_viscosity = 0.05\nnegative_pressure = \"clamp\"",
-    )],
+    variants: &[
+        Variant::new(
+            "continuity",
+            "density = \"continuity\"\nartificial_viscosity = 0.05\nnegative_pressure = \"clamp\"",
+        ),
+        Variant::extra("engineering", "accuracy = \"engineering\""),
+        Variant::extra("dfsph", "method = \"dfsph\""),
+    ],
 };
 pub const CASES: &[&Case] = &[&CASE];
 
