@@ -134,7 +134,12 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         tension_factor: match solver.surface_tension {
             SurfaceTension::Csf => {
                 let scale = 1.0 / support_radius;
-                material.surface_tension / rest_density * volume * (scale * scale) * (scale * scale) * scale
+                let strength = if scheme.is_implicit() { dfsph::CSF_PER_SIGMA } else { 1.0 };
+                strength * material.surface_tension / rest_density
+                    * volume
+                    * (scale * scale)
+                    * (scale * scale)
+                    * scale
             }
             _ => 0.0,
         },
@@ -147,10 +152,10 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
             scene.gravity.length() + oscillation.length(),
             (scene.domain.max - scene.domain.min).length(),
         ),
-        // The pressure under a curved surface with tension does not vanish at the surface: the addition would do work.
+        // The cohesion of Akinci's model is fitted to a surface that is compressed.
         surface_completion: match solver.surface_tension {
-            SurfaceTension::None => dfsph::surface_completion(solver.kernel, f64::from(solver.support_ratio)),
-            _ => 0.0,
+            SurfaceTension::Akinci2013 => 0.0,
+            _ => dfsph::surface_completion(solver.kernel, f64::from(solver.support_ratio)),
         },
         solid_stretch: solid.stretch,
         slope_offset: scene.fluid.particle_spacing * solid.slope_offset,

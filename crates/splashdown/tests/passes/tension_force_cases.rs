@@ -31,6 +31,8 @@ pub fn cases() -> Vec<Case> {
             cases.push(tension_force("wider support, open above", kernels, open, is_corrected));
             cases.push(tension_force("repelled, open above", kernels, repelled(open), is_corrected));
             cases.push(tension_force("repelled", kernels, repelled(surface(2.0)), is_corrected));
+            let implicit = Params { is_implicit: 1, ..open };
+            cases.push(tension_force("implicit pressure", kernels, implicit, is_corrected));
         }
     }
     cases
@@ -137,7 +139,12 @@ fn forces(
             // Without unit: g d / H^5 is the gradient of the kernel.
             let g = c.support.powi(5) * kernels.gradient.gradient(d, c.support);
             let reflection = DMat3::from_diagonal(by.sign);
-            gradient.add_parts(&[matrix(i) * g, reflection * matrix(j) * reflection * g]);
+            let close = (1.0 - 4.0 * d.length() / c.support).max(0.0);
+            let attraction = if p.is_implicit == 1 { 1.0 - 4.0 * close } else { 1.0 };
+            gradient.add_parts(&[
+                attraction * matrix(i) * g,
+                attraction * (reflection * matrix(j) * reflection) * g,
+            ]);
             let image = by.sign * normal(smooth, j);
             let weighted = weight(image);
             turn.add_parts(&[

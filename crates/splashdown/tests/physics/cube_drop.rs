@@ -53,13 +53,15 @@ fn cube(across: u32, keys: &str) -> (Simulation, f64) {
     (Simulation::with_particles(&scene, executor(), &particles).unwrap(), radius)
 }
 
-/// The area of a ball with the volume of the mesh over the area of the mesh.
-fn sphericity(particles: &Particles) -> f64 {
+/// The area of a ball with the volume of the mesh over the area of the mesh, and the volume of the mesh over that of the
+/// particles. Cavities count.
+fn sphericity(particles: &Particles) -> (f64, f64) {
     let mut params = SurfaceParams::new(SPACING as f32);
     // The particles of the surface are as rough as half a spacing; smoothing removes that and keeps the shape.
     params.smoothing_iterations = 20;
     let (mesh, _) = reconstruct_with(&particles.positions, &params, &mut executor()).unwrap();
-    PI.cbrt() * (6.0 * mesh.volume()).powf(2.0 / 3.0) / area(&mesh)
+    let volume = particles.positions.len() as f64 * SPACING.powi(3);
+    (PI.cbrt() * (6.0 * mesh.volume()).powf(2.0 / 3.0) / area(&mesh), mesh.volume() / volume)
 }
 
 fn area(mesh: &Mesh) -> f64 {
@@ -77,17 +79,24 @@ fn a_cube_becomes_a_ball() {
         let (mut simulation, radius) = cube(across, variant.keys);
         let time = (DENSITY * radius.powi(3) / TENSION).sqrt();
         let mut particles = simulation.particles().unwrap();
-        let mut curve: Series = vec![(0.0, sphericity(&particles))];
+        let mut curve: Series = vec![(0.0, sphericity(&particles).0)];
         for step in 1..=(DURATION * f64::from(SAMPLES)) as u32 {
             let stats = simulation.advance((time / f64::from(SAMPLES)) as f32).unwrap();
             assert_eq!((stats.escaped, stats.non_finite), (0, 0), "{stats:?}");
             particles = simulation.particles().unwrap();
-            curve.push((f64::from(step) / f64::from(SAMPLES), sphericity(&particles)));
+            curve.push((f64::from(step) / f64::from(SAMPLES), sphericity(&particles).0));
         }
         figures.measure("sphericity after 8 capillary times", curve[curve.len() - 1].1);
+        figures.report(
+            "volume of the surface over that of the particles, minus one",
+            sphericity(&particles).1 - 1.0,
+        );
         let centre = particles.positions.iter().map(|&x| vec(x)).sum::<DVec3>();
         let drift = centre.length() / particles.positions.len() as f64 / radius;
         figures.measure("motion of the centre over R", drift);
+        let side = DVec3::splat(2.0 * radius);
+        let nearest = super::disorder::measure(&particles.positions, SPACING, -side, side).nearest;
+        figures.measure("disorder: smallest distance, spacings", nearest);
         let line = vec![(0.0, 1.0), (DURATION, 1.0)];
         figures.plot(
             "Sphericity (dots: a ball)",
@@ -102,7 +111,9 @@ fn a_cube_becomes_a_ball() {
 fn the_cube_itself_is_detected() {
     let (mut simulation, _) = cube(8, CASE.variants[0].keys);
     let mut figures = Figures::new(&CASE, CONTROL.name, 8);
-    figures
-        .measure("one minus the sphericity of the cube", 1.0 - sphericity(&simulation.particles().unwrap()));
+    figures.measure(
+        "one minus the sphericity of the cube",
+        1.0 - sphericity(&simulation.particles().unwrap()).0,
+    );
     figures.close();
 }

@@ -18,18 +18,18 @@ pub struct Disorder {
 pub fn measure(positions: &[[f32; 3]], spacing: f64, min: DVec3, max: DVec3) -> Disorder {
     let reach = 3.0 * spacing;
     let cell = |x: DVec3| (x / reach).floor().as_ivec3();
-    let mut cells: HashMap<glam::IVec3, Vec<DVec3>> = HashMap::new();
-    for &x in positions {
-        cells.entry(cell(vec(x))).or_default().push(vec(x));
+    let mut cells: HashMap<glam::IVec3, Vec<(usize, DVec3)>> = HashMap::new();
+    for (i, x) in positions.iter().map(|&x| vec(x)).enumerate() {
+        cells.entry(cell(x)).or_default().push((i, x));
     }
     let (mut nearest, mut sums) = (f64::MAX, Vec::new());
-    for x in positions.iter().map(|&x| vec(x)) {
+    for (i, x) in positions.iter().map(|&x| vec(x)).enumerate() {
         // The slab is thin: all of its thickness counts, and only its sides are left out.
         let inside = |k: usize| x[k] - min[k] > reach && max[k] - x[k] > reach;
         let mut sum = 0.0;
         for shift in 0..27 {
             let other = cell(x) + glam::IVec3::new(shift % 3 - 1, shift / 3 % 3 - 1, shift / 9 - 1);
-            for y in cells.get(&other).into_iter().flatten() {
+            for &(j, y) in cells.get(&other).into_iter().flatten() {
                 // Mirror images complete the support at the walls of the slab.
                 for z in [y.z, 2.0 * min.z - y.z, 2.0 * max.z - y.z] {
                     let q = x.distance(DVec3::new(y.x, y.y, z)) / reach;
@@ -37,9 +37,8 @@ pub fn measure(positions: &[[f32; 3]], spacing: f64, min: DVec3, max: DVec3) -> 
                         sum += (1.0 - q).powi(4) * (4.0 * q + 1.0);
                     }
                 }
-                let distance = x.distance(*y);
-                if distance > 0.0 {
-                    nearest = nearest.min(distance / spacing);
+                if i != j {
+                    nearest = nearest.min(x.distance(y) / spacing);
                 }
             }
         }
@@ -62,4 +61,6 @@ fn a_lattice_has_no_disorder_and_a_displaced_particle_has() {
     lattice[1010][0] += 0.04;
     let found = measure(&lattice, 0.1, min, max);
     assert!((found.nearest - 0.6).abs() < 1e-5 && found.spread > 1e-3, "{} {}", found.nearest, found.spread);
+    lattice[1010] = lattice[1011];
+    assert_eq!(measure(&lattice, 0.1, min, max).nearest, 0.0);
 }

@@ -2,7 +2,7 @@ use std::marker::PhantomData;
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
-use super::TensionForceBindings;
+use super::{CLOSE, REPULSION, TensionForceBindings};
 use crate::boundary::{Images, Reflection};
 use crate::kernel::Kernel;
 use crate::pairs::{
@@ -31,6 +31,7 @@ pub(super) fn tension_force<K: Kernel, const CORRECTED: bool>(buffers: TensionFo
         corrections: corrections.as_chunks::<2>().0,
         images: Images::new(params),
         scale: 1.0 / params.support_radius,
+        repulsion: if params.is_implicit == 1 { REPULSION } else { 0.0 },
         kernel: PhantomData,
     };
     let sorted =
@@ -46,6 +47,8 @@ struct TensionForce<'a, K, const CORRECTED: bool> {
     corrections: &'a [[Vec4; 2]],
     images: Images,
     scale: f32,
+    /// How steeply the attraction of close particles falls.
+    repulsion: f32,
     kernel: PhantomData<K>,
 }
 
@@ -90,11 +93,14 @@ impl<K: Kernel, const CORRECTED: bool> PairSum<13, 5> for TensionForce<'_, K, CO
     fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 13]) -> [V; 5] {
         let (x, u) = (splat::<V>(self.positions[i]), self.direction(i).to_array().map(V::splat));
         let own = self.correction(i).map(V::splat);
+        let (one, repulsion) = (V::splat(1.0), V::splat(self.repulsion));
         #[inline(always)]
         move |[x_j, y_j, z_j, a, b, c, weight, xx, yy, zz, xy, xz, yz]| {
             let d = difference(x, [x_j, y_j, z_j]);
             let r2 = dot(d, d);
-            let g = K::g(r2.sqrt() * self.scale);
+            let q = r2.sqrt() * self.scale;
+            let g = K::g(q);
+            let closeness = (one - q * (1.0 / CLOSE)).max(V::splat(0.0));
             let along = dot(d, u);
             let (xx, yy, zz) = (own[0] + xx, own[1] + yy, own[2] + zz);
             let (xy, xz, yz) = (own[3] + xy, own[4] + xz, own[5] + yz);
@@ -103,7 +109,7 @@ impl<K: Kernel, const CORRECTED: bool> PairSum<13, 5> for TensionForce<'_, K, CO
                 xy * d[0] + yy * d[1] + yz * d[2],
                 xz * d[0] + yz * d[1] + zz * d[2],
             ];
-            let [l, m, n] = scaled(g, gradient);
+            let [l, m, n] = scaled(g * (one - closeness * repulsion), gradient);
             let weighted = g * weight;
             [weighted * dot(difference([a, b, c], u), d), weighted * (r2 - along * along), l, m, n]
         }

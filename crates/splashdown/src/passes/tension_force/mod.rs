@@ -15,6 +15,11 @@
 //! reduce the curvature. The particles that count lie at a mean depth z below the surface. There a ball has the curvature
 //! kappa, and 1 / (1 / kappa + z / 2) at its surface.
 //!
+//! *Pairs* (`dfsph` only). In the first layers this force exceeds the pressure force, so that each particle is attracted by its
+//! neighbours as by a negative pressure, and particles pair up. `continuity` separates them by shifting. With the implicit
+//! pressure grad W is therefore multiplied by 1 - 4 (1 - 4 q) where q = |d| / H is below 1/4, the distance from which the gradient of
+//! Wendland C2 decreases towards zero. The factor is one at 1/4, and negative, a repulsion, below 3/16.
+//!
 //! Images have reflected normals, so that the surface meets walls at a right angle: without the energy of wetting, the
 //! surface and its image are one smooth surface.
 //!
@@ -48,6 +53,10 @@ bindings! {
         accelerations: write [Vec4],
     }
 }
+
+/// The distance over the support radius below which the attraction of two particles is reduced, and how steeply it falls.
+const CLOSE: f32 = 0.25;
+const REPULSION: f32 = 4.0;
 
 /// With the Wendland C2 kernel.
 pub static WENDLAND_C2: PassDesc = PassDesc {

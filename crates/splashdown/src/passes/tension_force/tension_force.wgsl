@@ -10,6 +10,10 @@
 
 override CORRECTED: u32 = 0u;
 
+// As `CLOSE` and `REPULSION` in mod.rs.
+const CLOSE = 0.25;
+const REPULSION = 4.0;
+
 // The weight of a normal: 0 where it is too short to have a direction, 1 at the surface.
 fn normal_weight(normal: vec3<f32>) -> f32 {
     return clamp((length(normal) - params.weakest_normal) / (1.5 * params.weakest_normal), 0.0, 1.0);
@@ -53,6 +57,7 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
     let x = sorted_positions[i].xyz;
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
+    let repulsion = select(0.0, REPULSION, params.is_implicit == 1u);
     var turn = 0.0;
     var extent = 0.0;
     var gradient = vec3(0.0);
@@ -71,13 +76,15 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
                 if (r2 >= reach) {
                     continue;
                 }
-                let g = kernel_g(sqrt(r2) * scale);
+                let q = sqrt(r2) * scale;
+                let g = kernel_g(q);
                 let other = correction_of(j);
                 let both = Symmetric(
                     own_correction.diagonal + other.diagonal,
                     own_correction.others + other.others,
                 );
-                gradient += g * applied(both, d);
+                let attraction = 1.0 - repulsion * max(1.0 - q / CLOSE, 0.0);
+                gradient += g * attraction * applied(both, d);
                 let n = smooth_normals[j].xyz;
                 let weighted = g * normal_weight(n);
                 let along = dot(d, own_u);
