@@ -1,4 +1,5 @@
-//! The command `validate`: runs the physics cases at two or three resolutions and writes the page of all figures.
+//! The command `validate`: runs the physics cases at two or three resolutions, and writes the page of all figures and the tables
+//! of the report.
 //!
 //! It runs the physics tests of `cargo xtask test`; environment variables select the resolutions and the folder of the
 //! figures. The figures of each run replace its earlier ones in `docs/validation`, from which the page is written, so
@@ -7,6 +8,7 @@
 mod chart;
 mod page;
 mod record;
+mod tables;
 
 use std::fs;
 use std::path::Path;
@@ -15,6 +17,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::layers::{self, Outcome, Report};
 use crate::process::{self, say};
+use crate::report::date;
 use crate::storms;
 
 /// Where the tests write the figures of this call.
@@ -24,6 +27,9 @@ const RECORDS: &str = "docs/validation";
 /// The page, and the folder of its plots, relative to `docs`.
 const PAGE: &str = "docs/validation-figures.md";
 const PLOTS: &str = "pictures/validation";
+/// The report, and which figures its tables show.
+const REPORT: &str = "docs/validation.md";
+const TABLES: &str = "docs/validation/tables.toml";
 
 /// The command `validate`.
 pub fn run(arguments: &[String]) -> Result<()> {
@@ -95,9 +101,9 @@ pub fn run(arguments: &[String]) -> Result<()> {
     {
         bail!("no case has the variant {variant}: the names are the columns of {PAGE}, for example dfsph");
     }
-    record::merge(&process::root().join(FIGURES), &process::root().join(RECORDS))?;
+    record::merge(&process::root().join(FIGURES), &process::root().join(RECORDS), &date())?;
     write_page(process::root())?;
-    say(format!("Written: {PAGE}. `cargo xtask guide` builds it as HTML."));
+    say(format!("Written: {PAGE}, and the tables of {REPORT}. `cargo xtask guide` builds them as HTML."));
     if has("--page") { Ok(()) } else { report.close() }
 }
 
@@ -113,12 +119,20 @@ fn write_page(root: &Path) -> Result<()> {
     for (name, svg) in charts {
         fs::write(plots.join(&name), svg).with_context(|| format!("cannot write {name}"))?;
     }
-    fs::write(root.join(PAGE), text).with_context(|| format!("cannot write {PAGE}"))
+    fs::write(root.join(PAGE), text).with_context(|| format!("cannot write {PAGE}"))?;
+    let report = tables::write(&read(root, REPORT)?, &read(root, TABLES)?, &cases)?;
+    fs::write(root.join(REPORT), report).with_context(|| format!("cannot write {REPORT}"))
+}
+
+/// A text of the repository, with line feeds only.
+fn read(root: &Path, path: &str) -> Result<String> {
+    let text = fs::read_to_string(root.join(path)).with_context(|| format!("cannot read {path}"))?;
+    Ok(text.replace("\r\n", "\n"))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{PAGE, PLOTS, RECORDS, page, record};
+    use super::{PAGE, PLOTS, RECORDS, REPORT, TABLES, page, read, record, tables};
     use crate::process::root;
 
     #[test]
@@ -129,5 +143,16 @@ mod tests {
         for (name, _) in charts {
             assert!(root().join("docs").join(PLOTS).join(&name).exists(), "{name} is missing");
         }
+    }
+
+    #[test]
+    fn the_tables_of_the_report_show_the_committed_figures() {
+        let cases = record::read(&root().join(RECORDS)).unwrap();
+        let report = read(root(), REPORT).unwrap();
+        let written = tables::write(&report, &read(root(), TABLES).unwrap(), &cases).unwrap();
+        for (committed, expected) in report.lines().zip(written.lines()) {
+            assert_eq!(committed, expected, "{REPORT} is out of date: run `cargo xtask validate --page`");
+        }
+        assert_eq!(report.len(), written.len());
     }
 }

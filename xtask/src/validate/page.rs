@@ -111,6 +111,13 @@ fn section(page: &mut String, records: &[Record]) {
             .collect();
         let _ = writeln!(page, "| *wall time* | {size} | | {} |", times.join(" | "));
     }
+    for &size in &sizes {
+        let days: Vec<String> = columns
+            .iter()
+            .map(|column| at(size, column).map(|r| r.date.clone()).unwrap_or_default())
+            .collect();
+        let _ = writeln!(page, "| *measured* | {size} | | {} |", days.join(" | "));
+    }
     let cores = distinct(records.iter().map(|record| record.cores.to_string()));
     let _ = writeln!(page, "\nMeasured on {} cores.", cores.join(" and "));
     notes(page, records);
@@ -236,6 +243,7 @@ mod tests {
             column: "continuity".into(),
             seconds: 2.0,
             cores: 2,
+            date: "2026-11-28".into(),
             figures: vec![figure],
             plots: Vec::new(),
         }
@@ -252,6 +260,7 @@ mod tests {
             "| error | 20 | at most 0.02 | 0.0100 met |",
             "| *order* | | | 2.0 |",
             "| *wall time* | 20 | | 2 s |",
+            "| *measured* | 20 | | 2026-11-28 |",
         ] {
             assert!(page.contains(line), "{line}\n{page}");
         }

@@ -35,6 +35,8 @@ pub struct Record {
     pub column: String,
     pub seconds: f64,
     pub cores: u64,
+    /// The day of the run, as 2026-11-28.
+    pub date: String,
     pub figures: Vec<Figure>,
     /// Title, axes, measured and simulated points.
     pub plots: Vec<(String, [String; 2], Series, Series)>,
@@ -48,13 +50,14 @@ pub fn has_variant(folder: &Path, variant: &str) -> Result<bool> {
     Ok(folder.exists() && values(folder)?.iter().any(|value| text(value, "variant") == variant))
 }
 
-/// Replaces the records of `from` in the files of `to`, one per case; other records remain.
+/// Replaces the records of `from` in the files of `to`, one per case, and adds this date to them; other records remain.
 ///
 /// # Errors
 /// If a file cannot be read or written.
-pub fn merge(from: &Path, to: &Path) -> Result<()> {
+pub fn merge(from: &Path, to: &Path, date: &str) -> Result<()> {
     let mut cases: BTreeMap<String, Vec<Value>> = BTreeMap::new();
-    for value in values(from)? {
+    for mut value in values(from)? {
+        value["date"] = date.into();
         cases.entry(text(&value, "case")).or_default().push(value);
     }
     fs::create_dir_all(to)?;
@@ -156,6 +159,7 @@ fn record(value: &Value) -> Record {
         column: if executor == "CPU" { variant } else { format!("{variant}, {executor}") },
         seconds: value["seconds"].as_f64().unwrap_or_default(),
         cores: value["cores"].as_u64().unwrap_or_default(),
+        date: text(value, "date"),
         figures: items("figures").iter().map(figure).collect(),
         plots: items("plots").iter().map(plot).collect(),
     }
@@ -198,7 +202,7 @@ mod tests {
                 "seconds": 1.5, "cores": 2, "plots": [], "figures": [{{"figure": "x", "measured": {measured}}}]}}"#
             );
             fs::write(from.join(format!("{variant}.json")), text).unwrap();
-            merge(&from, &to).unwrap();
+            merge(&from, &to, "2026-11-28").unwrap();
             fs::remove_dir_all(&from).unwrap();
         };
         write("one", 1.0);
@@ -208,6 +212,7 @@ mod tests {
         let found: Vec<(&str, f64)> =
             cases["a case"].iter().map(|r| (r.column.as_str(), r.figures[0].measured)).collect();
         assert_eq!(found, [("one", 3.0), ("two", 2.0)]);
+        assert!(cases["a case"].iter().all(|record| record.date == "2026-11-28"));
         fs::remove_dir_all(&folder).unwrap();
     }
 }
