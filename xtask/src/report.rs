@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::time::SystemTime;
 
 use anyhow::{Context, Result};
 
@@ -50,8 +51,12 @@ impl Page {
 
 /// Today, in UTC.
 pub fn date() -> String {
-    let seconds =
-        std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    date_of(SystemTime::now())
+}
+
+/// The day of a time, in UTC.
+pub fn date_of(time: SystemTime) -> String {
+    let seconds = time.duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let [year, month, day] = civil(seconds / 86_400);
     format!("{year}-{month:02}-{day:02}")
 }

@@ -17,7 +17,6 @@ use anyhow::{Context, Result, bail};
 
 use crate::layers::{self, Outcome, Report};
 use crate::process::{self, say};
-use crate::report::date;
 use crate::storms;
 
 /// Where the tests write the figures of this call.
@@ -101,7 +100,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     {
         bail!("no case has the variant {variant}: the names are the columns of {PAGE}, for example dfsph");
     }
-    record::merge(&process::root().join(FIGURES), &process::root().join(RECORDS), &date())?;
+    record::merge(&process::root().join(FIGURES), &process::root().join(RECORDS))?;
     write_page(process::root())?;
     say(format!("Written: {PAGE}, and the tables of {REPORT}. `cargo xtask guide` builds them as HTML."));
     if has("--page") { Ok(()) } else { report.close() }

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use serde_json::Value;
+
+use crate::report::date_of;
 
 /// One figure and its gate.
 #[derive(Debug, Clone)]
@@ -50,15 +52,18 @@ pub fn has_variant(folder: &Path, variant: &str) -> Result<bool> {
     Ok(folder.exists() && values(folder)?.iter().any(|value| text(value, "variant") == variant))
 }
 
-/// Replaces the records of `from` in the files of `to`, one per case, and adds this date to them; other records remain.
+/// Replaces the records of `from` in the files of `to`, one per case, with the day on which each was written; other records remain.
 ///
 /// # Errors
 /// If a file cannot be read or written.
-pub fn merge(from: &Path, to: &Path, date: &str) -> Result<()> {
+pub fn merge(from: &Path, to: &Path) -> Result<()> {
     let mut cases: BTreeMap<String, Vec<Value>> = BTreeMap::new();
-    for mut value in values(from)? {
-        value["date"] = date.into();
-        cases.entry(text(&value, "case")).or_default().push(value);
+    for path in files(from)? {
+        let day = date_of(fs::metadata(&path)?.modified()?);
+        for mut value in array(&path)? {
+            value["date"] = day.as_str().into();
+            cases.entry(text(&value, "case")).or_default().push(value);
+        }
     }
     fs::create_dir_all(to)?;
     for (case, fresh) in cases {
@@ -122,17 +127,26 @@ pub fn slug(case: &str) -> String {
 }
 
 fn values(folder: &Path) -> Result<Vec<Value>> {
+    let mut all = Vec::new();
+    for path in files(folder)? {
+        all.extend(array(&path)?);
+    }
+    Ok(all)
+}
+
+/// The JSON files of a folder; none if it does not exist.
+fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     if !folder.exists() {
         return Ok(Vec::new());
     }
-    let mut all = Vec::new();
+    let mut found = Vec::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         if path.extension().is_some_and(|end| end == "json") {
-            all.extend(array(&path)?);
+            found.push(path);
         }
     }
-    Ok(all)
+    Ok(found)
 }
 
 /// A file contains one record or an array of them.
@@ -189,6 +203,8 @@ fn plot(value: &Value) -> (String, [String; 2], Series, Series) {
 
 #[cfg(test)]
 mod tests {
+    use std::time::{Duration, SystemTime};
+
     use super::*;
 
     #[test]
@@ -201,8 +217,12 @@ mod tests {
                 r#"{{"case": "a case", "variant": "{variant}", "executor": "CPU", "spacings": 20, "across": "depth",
                 "seconds": 1.5, "cores": 2, "plots": [], "figures": [{{"figure": "x", "measured": {measured}}}]}}"#
             );
-            fs::write(from.join(format!("{variant}.json")), text).unwrap();
-            merge(&from, &to, "2026-11-28").unwrap();
+            let path = from.join(format!("{variant}.json"));
+            fs::write(&path, text).unwrap();
+            // The figures of an earlier day keep their date.
+            let day = SystemTime::UNIX_EPOCH + Duration::from_secs(20_454 * 86_400);
+            fs::File::options().write(true).open(&path).unwrap().set_modified(day).unwrap();
+            merge(&from, &to).unwrap();
             fs::remove_dir_all(&from).unwrap();
         };
         write("one", 1.0);
@@ -212,7 +232,7 @@ mod tests {
         let found: Vec<(&str, f64)> =
             cases["a case"].iter().map(|r| (r.column.as_str(), r.figures[0].measured)).collect();
         assert_eq!(found, [("one", 3.0), ("two", 2.0)]);
-        assert!(cases["a case"].iter().all(|record| record.date == "2026-11-28"));
+        assert!(cases["a case"].iter().all(|record| record.date == "2026-01-01"));
         fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -80,6 +80,7 @@ impl Table {
         let labels: Vec<String> = self.columns.iter().map(Column::heading).collect();
         let mut text = format!("| {} | {} |\n", self.head, labels.join(" | "));
         text += &format!("|---|{}\n", "---:|".repeat(labels.len()));
+        let mut is_empty = vec![true; self.columns.len()];
         for row in &self.rows {
             let name = row.case.as_ref().unwrap_or(&self.case);
             let records = cases.get(name).with_context(|| format!("no case {name}"))?;
@@ -88,16 +89,19 @@ impl Table {
             if cells.iter().flatten().all(Option::is_none) {
                 bail!("{name}: no column has the figure {}", row.figure);
             }
-            let words: Vec<String> = self
-                .columns
-                .iter()
-                .zip(&cells)
-                .map(|(column, found)| match column.is_gate() {
-                    true => gates(&self.columns, &cells, row),
-                    false => values(found, row.unit),
-                })
-                .collect();
+            let has_gate = cells.iter().flatten().flatten().any(|figure| figure.gate.is_some());
+            let mut words = Vec::new();
+            for (k, (column, found)) in self.columns.iter().zip(&cells).enumerate() {
+                is_empty[k] &= !column.is_gate() && found.iter().all(Option::is_none);
+                words.push(match column.is_gate() {
+                    true => gates(&self.columns, &cells, row)?,
+                    false => values(found, row.unit, has_gate)?,
+                });
+            }
             text += &format!("| {} | {} |\n", row.text, words.join(" | "));
+        }
+        if let Some(k) = is_empty.iter().position(|&empty| empty) {
+            bail!("the column {} has no figure", self.columns[k].variant);
         }
         Ok(text)
     }
@@ -127,94 +131,150 @@ impl Column {
     }
 }
 
-/// The values of a cell, bold where they miss their gate; "-" where there are none.
-fn values(found: &[Option<&Figure>], unit: Unit) -> String {
+/// The values of a cell: bold where they miss their gate, in parentheses where only others of the row have one; "-" where
+/// there are none.
+fn values(found: &[Option<&Figure>], unit: Unit, has_gate: bool) -> Result<String> {
     if found.iter().all(Option::is_none) {
-        return "-".to_owned();
+        return Ok("-".to_owned());
     }
     let is_missed = |figure: &Figure| figure.gate.is_some() && !figure.is_met;
     let all_missed = found.iter().all(|figure| figure.is_some_and(is_missed));
     let sign = if unit == Unit::Percent { " %" } else { "" };
-    let word = |figure: &Option<&Figure>| match figure {
-        None => "-".to_owned(),
-        Some(figure) if is_missed(figure) && !all_missed => format!("**{}**", number(figure.measured, unit)),
-        Some(figure) => number(figure.measured, unit),
+    let word = |figure: &Option<&Figure>| -> Result<String> {
+        let Some(figure) = figure else { return Ok("-".to_owned()) };
+        let number = judged(figure, unit)?;
+        Ok(match figure.gate {
+            None if has_gate => format!("({number})"),
+            Some(_) if is_missed(figure) && !all_missed => format!("**{number}**"),
+            _ => number,
+        })
     };
-    let text = format!("{}{sign}", found.iter().map(word).collect::<Vec<String>>().join(", "));
-    if all_missed { format!("**{text}**") } else { text }
+    let text = format!("{}{sign}", found.iter().map(word).collect::<Result<Vec<String>>>()?.join(", "));
+    Ok(if all_missed { format!("**{text}**") } else { text })
 }
 
-/// The gates of a row. Where they differ, the columns or else the resolutions that each applies to are named.
-fn gates(columns: &[Column], cells: &[Vec<Option<&Figure>>], row: &Row) -> String {
-    let mut found: Vec<(&str, Vec<u64>, Vec<String>)> = Vec::new();
+/// The number of a figure with as many digits as tell on which side of its limit it is.
+fn judged(figure: &Figure, unit: Unit) -> Result<String> {
+    let Some(gate) = &figure.gate else { return Ok(number(figure.measured, unit, 0)) };
+    let limit = Limit::parse(gate)?;
+    let scale = if unit == Unit::Percent { 0.01 } else { 1.0 };
+    let written = (0..4).map(|more| number(figure.measured, unit, more));
+    let tells = |text: &String| {
+        text.parse().is_ok_and(|value: f64| limit.holds(scale * value) == limit.holds(figure.measured))
+    };
+    Ok(written.clone().find(tells).unwrap_or_else(|| number(figure.measured, unit, 3)))
+}
+
+/// The gates of a row. Where they differ, the columns or resolutions that each applies to are named.
+fn gates(columns: &[Column], cells: &[Vec<Option<&Figure>>], row: &Row) -> Result<String> {
+    // Each gate with the resolutions and columns of its figures.
+    let mut found: Vec<(&str, Vec<(u64, String)>)> = Vec::new();
     for (column, figures) in columns.iter().zip(cells).filter(|(column, _)| !column.is_gate()) {
         for (&size, figure) in column.at.as_ref().unwrap_or(&row.at).iter().zip(figures) {
             let Some(gate) = figure.and_then(|figure| figure.gate.as_deref()) else { continue };
-            let known = found.iter().position(|(text, ..)| *text == gate).unwrap_or_else(|| {
-                found.push((gate, Vec::new(), Vec::new()));
-                found.len() - 1
-            });
-            let (_, sizes, names) = &mut found[known];
-            if !sizes.contains(&size) {
-                sizes.push(size);
-            }
-            if !names.contains(&column.heading()) {
-                names.push(column.heading());
+            let place = (size, column.heading());
+            match found.iter_mut().find(|(text, _)| *text == gate) {
+                Some((_, places)) => places.push(place),
+                None => found.push((gate, vec![place])),
             }
         }
     }
-    // The columns tell the gates apart if no column has two of them.
-    let mut names: Vec<&String> = found.iter().flat_map(|(.., names)| names).collect();
-    names.sort();
-    let by_column = names.windows(2).all(|pair| pair[0] != pair[1]);
-    let word = |(gate, sizes, names): &(&str, Vec<u64>, Vec<String>)| {
-        let limit = limit(gate, row.unit);
-        let sizes: Vec<String> = sizes.iter().map(u64::to_string).collect();
-        match (found.len(), by_column) {
-            (1, _) => limit,
-            (_, true) => format!("{limit} ({})", names.join(", ")),
-            (_, false) => format!("{limit} ({})", sizes.join(", ")),
+    let columns = |places: &[(u64, String)]| distinct(places.iter().map(|(_, name)| name.clone()));
+    let sizes = |places: &[(u64, String)]| distinct(places.iter().map(|(size, _)| size.to_string()));
+    // Names tell the gates apart if none of them has two gates.
+    let tell = |names: &dyn Fn(&[(u64, String)]) -> Vec<String>| {
+        let all: Vec<String> = found.iter().flat_map(|(_, places)| names(places)).collect();
+        distinct(all.iter()).len() == all.len()
+    };
+    let (by_column, by_size) = (tell(&columns), tell(&sizes));
+    let word = |(gate, places): &(&str, Vec<(u64, String)>)| -> Result<String> {
+        let limit = Limit::parse(gate)?.words(row.unit);
+        let both = |(size, name): &(u64, String)| format!("{name} at {size}");
+        let names = match (by_column, by_size) {
+            (true, _) => columns(places),
+            (_, true) => sizes(places),
+            _ => places.iter().map(both).collect(),
+        };
+        Ok(if found.len() == 1 { limit } else { format!("{limit} ({})", names.join(", ")) })
+    };
+    let words = found.iter().map(word).collect::<Result<Vec<String>>>()?;
+    Ok(if words.is_empty() { "-".to_owned() } else { words.join("; ") })
+}
+
+fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut found = Vec::new();
+    for item in items {
+        if !found.contains(&item) {
+            found.push(item);
         }
-    };
-    let words: Vec<String> = found.iter().map(word).collect();
-    if words.is_empty() { "-".to_owned() } else { words.join("; ") }
+    }
+    found
 }
 
-/// A limit in the unit of its row: "<= 0.03" is "3 %", and a range around zero the size of its ends.
-fn limit(gate: &str, unit: Unit) -> String {
-    let sign = if unit == Unit::Percent { " %" } else { "" };
-    let scaled = |text: &str| -> String {
-        let value: f64 = text.parse().unwrap_or(f64::NAN);
-        let value = if unit == Unit::Percent { 100.0 * value } else { value };
-        // Removes the rounding of the product.
-        format!("{}", (1e6 * value).round() / 1e6)
-    };
-    if let Some(most) = gate.strip_prefix("<= ") {
-        return format!("{}{sign}", scaled(most));
+/// A limit as the records contain it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Limit {
+    AtMost(f64),
+    Within(f64, f64),
+    Above(f64),
+}
+
+impl Limit {
+    fn parse(text: &str) -> Result<Self> {
+        let value = |text: &str| text.parse::<f64>().ok();
+        let parsed = if let Some(most) = text.strip_prefix("<= ") {
+            value(most).map(Self::AtMost)
+        } else if let Some(least) = text.strip_prefix("control > ") {
+            value(least).map(Self::Above)
+        } else {
+            text.split_once(" to ").and_then(|(low, high)| Some(Self::Within(value(low)?, value(high)?)))
+        };
+        parsed.with_context(|| format!("not a limit: {text}"))
     }
-    if let Some(least) = gate.strip_prefix("control > ") {
-        return format!("above {}{sign}", scaled(least));
+
+    fn holds(self, value: f64) -> bool {
+        match self {
+            Self::AtMost(limit) => value <= limit,
+            Self::Within(low, high) => (low..=high).contains(&value),
+            Self::Above(limit) => value > limit,
+        }
     }
-    match gate.split_once(" to ") {
-        Some((low, high)) if low.strip_prefix('-') == Some(high) => format!("{}{sign}", scaled(high)),
-        Some((low, high)) => format!("{} to {}{sign}", scaled(low), scaled(high)),
-        None => gate.to_owned(),
+
+    /// "<= 0.03" is "3 %", and a range around zero the size of its ends.
+    fn words(self, unit: Unit) -> String {
+        let sign = if unit == Unit::Percent { " %" } else { "" };
+        // Rounding removes the error of the product.
+        let scale = if unit == Unit::Percent { 100.0 } else { 1.0 };
+        let scaled = |value: f64| (1e9 * scale * value).round() / 1e9;
+        match self {
+            Self::AtMost(limit) => format!("{}{sign}", scaled(limit)),
+            Self::Above(limit) => format!("above {}{sign}", scaled(limit)),
+            Self::Within(low, high) if low == -high => format!("{}{sign}", scaled(high)),
+            Self::Within(low, high) => format!("{} to {}{sign}", scaled(low), scaled(high)),
+        }
     }
 }
 
-/// Three significant digits, two of percentages, one decimal of degrees.
-fn number(value: f64, unit: Unit) -> String {
+/// Three significant digits, two of percentages, one decimal of degrees, and `more` digits.
+fn number(value: f64, unit: Unit, more: usize) -> String {
     let (value, digits) = match unit {
-        Unit::None => (value, 3),
-        Unit::Percent => (100.0 * value, 2),
-        Unit::Degrees => return format!("{value:.1}"),
+        Unit::None => (value, 3 + more),
+        Unit::Percent => (100.0 * value, 2 + more),
+        Unit::Degrees => {
+            let text = format!("{value:.*}", 1 + more);
+            return if text.trim_start_matches('-').parse() == Ok(0.0) {
+                text.trim_start_matches('-').to_owned()
+            } else {
+                text
+            };
+        }
     };
     let size = value.abs();
     if size == 0.0 {
         return "0".to_owned();
     }
     if size < 1e-3 {
-        return if unit == Unit::Percent { "0.000".to_owned() } else { format!("{value:.0e}") };
+        return if unit == Unit::Percent { "0.000".to_owned() } else { format!("{value:.more$e}") };
     }
     // Rounding can add a digit: 9.96 has two digits as 10.
     let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
@@ -275,7 +335,7 @@ mod tests {
         let lines = [
             "| figure at 20 and 28 | `continuity` | gate | other |",
             "|---|---:|---:|---:|",
-            "| loss | 0.58, **20** % | 3 % | 23, - % |",
+            "| loss | 0.58, **20** % | 3 % | (23), - % |",
         ];
         let expected =
             format!("Text\n<!-- ANCHOR: waves -->\n{}\n<!-- ANCHOR_END: waves -->\nmore\n", lines.join("\n"));
@@ -295,7 +355,25 @@ mod tests {
         assert_eq!(line(&cases), "| loss | 0.58, **20** % | 3 % (`continuity`); 30 % (other) | 23, - % |");
         let records = cases.get_mut("wave").unwrap();
         records[1].figures[0].gate = Some("<= 0.3".into());
-        assert!(line(&cases).contains("| 3 % (20); 30 % (28, 20) |"), "{}", line(&cases));
+        let both = "| 3 % (`continuity` at 20); 30 % (`continuity` at 28, other at 20) |";
+        assert!(line(&cases).contains(both), "{}", line(&cases));
+        let records = cases.get_mut("wave").unwrap();
+        records[2].figures[0].gate = Some("<= 0.03".into());
+        assert!(line(&cases).contains("| 3 % (20); 30 % (28) |"), "{}", line(&cases));
+    }
+
+    #[test]
+    fn enough_digits_tell_the_side_of_a_limit() {
+        for (measured, gate, unit, text) in [
+            (0.1504, "<= 0.15", Unit::Percent, "15.04"),
+            (0.1496, "<= 0.15", Unit::Percent, "15"),
+            (1.1217, "0.88 to 1.12", Unit::None, "1.122"),
+            (1.1217, "0.8 to 1.2", Unit::None, "1.12"),
+            (-10.04, "-10 to 10", Unit::Degrees, "-10.04"),
+        ] {
+            let figure = figure("x", measured, gate, false);
+            assert_eq!(judged(&figure, unit).unwrap(), text);
+        }
     }
 
     #[test]
@@ -306,6 +384,7 @@ mod tests {
             ("case = \"wave\"", "case = \"tide\"", "tide"),
             ("[waves]", "[tides]", "no anchor tides"),
             ("head", "heading", "specification"),
+            ("variant = \"dfsph\"", "variant = \"dfhsp\"", "dfhsp"),
         ] {
             let error = write(report, &TABLE.replacen(from, to, 1), &cases()).unwrap_err();
             assert!(format!("{error:#}").contains(part), "{error:#}");
@@ -325,8 +404,9 @@ mod tests {
             (7.4e-7, Unit::None, "7e-7"),
             (-4.21, Unit::Degrees, "-4.2"),
             (0.0, Unit::Percent, "0"),
+            (-0.04, Unit::Degrees, "0.0"),
         ] {
-            assert_eq!(number(value, unit), text);
+            assert_eq!(number(value, unit, 0), text);
         }
         for (gate, unit, text) in [
             ("<= 0.07", Unit::Percent, "7 %"),
@@ -335,7 +415,8 @@ mod tests {
             ("-10 to 10", Unit::Degrees, "10"),
             ("control > 0.03", Unit::Percent, "above 3 %"),
         ] {
-            assert_eq!(limit(gate, unit), text);
+            assert_eq!(Limit::parse(gate).unwrap().words(unit), text);
         }
+        assert!(Limit::parse("at most a few").is_err());
     }
 }

@@ -5,7 +5,7 @@ use crate::boundary::part::Part;
 use crate::coupling::Stage;
 
 /// gamma of Akinci's surface tension for one N/m, times rho0^2 H^2. By `tests/physics/drop.rs` the period
-/// of a drop with a radius of five spacings corresponds to 1.5 times the surface tension of the material. Akinci's model is
+/// of a drop with a radius of five spacings corresponds to 1.8 times the surface tension of the material. Akinci's model is
 /// made for pictures, not for measurement (Akinci, Akinci & Teschner 2013).
 pub(super) const AKINCI_PER_SIGMA: f32 = 100.0;
 

@@ -31,8 +31,10 @@ pub fn cases() -> Vec<Case> {
             cases.push(tension_force("wider support, open above", kernels, open, is_corrected));
             cases.push(tension_force("repelled, open above", kernels, repelled(open), is_corrected));
             cases.push(tension_force("repelled", kernels, repelled(surface(2.0)), is_corrected));
-            let implicit = Params { is_implicit: 1, ..open };
-            cases.push(tension_force("implicit pressure", kernels, implicit, is_corrected));
+            for params in [open, repelled(open)] {
+                let implicit = Params { is_implicit: 1, ..params };
+                cases.push(tension_force("implicit pressure", kernels, implicit, is_corrected));
+            }
         }
     }
     cases
@@ -94,7 +96,9 @@ fn tension_force(name: &str, kernels: Kernels, params: Params, is_corrected: boo
     ]);
     let suffix = if is_corrected { "_corrected" } else { "" };
     let label = format!("tension_force.{}{suffix}", word(kernels));
-    let control: fn(&mut [Data]) = if params.wetting == 0.0 {
+    let control: fn(&mut [Data]) = if params.is_implicit == 1 {
+        |input: &mut [Data]| input[0].params().is_implicit = 0
+    } else if params.wetting == 0.0 {
         |input: &mut [Data]| input[0].params().tension_factor *= 1.002
     } else {
         |input: &mut [Data]| input[0].params().wetting *= 1.01
@@ -134,17 +138,15 @@ fn forces(
             return Sum::default();
         }
         let u = normal(smooth, i).normalize_or_zero();
-        let (mut gradient, mut turn, mut extent) = (Sum::default(), Sum::default(), Sum::default());
+        let [mut gradient, mut close, mut turn, mut extent] = [Sum::default(); 4];
         neighbours(world, i, |j, d, by, _| {
             // Without unit: g d / H^5 is the gradient of the kernel.
             let g = c.support.powi(5) * kernels.gradient.gradient(d, c.support);
             let reflection = DMat3::from_diagonal(by.sign);
-            let close = (1.0 - 4.0 * d.length() / c.support).max(0.0);
-            let attraction = if p.is_implicit == 1 { 1.0 - 4.0 * close } else { 1.0 };
-            gradient.add_parts(&[
-                attraction * matrix(i) * g,
-                attraction * (reflection * matrix(j) * reflection) * g,
-            ]);
+            let parts = [matrix(i) * g, reflection * matrix(j) * reflection * g];
+            gradient.add_parts(&parts);
+            let closeness = (1.0 - 4.0 * d.length() / c.support).max(0.0);
+            close.add_parts(&parts.map(|part| closeness * part));
             let image = by.sign * normal(smooth, j);
             let weighted = weight(image);
             turn.add_parts(&[
@@ -170,8 +172,11 @@ fn forces(
             pull -= share * (gradient.value - gradient.value.dot(normal) * normal);
             reach += share.abs();
         }
-        let force = curvature * gradient.value + pull;
-        let size = (curvature.abs() + reach) * gradient.size + curvature_size * gradient.value.length();
+        let repulsion = if p.is_implicit == 1 { 4.0 } else { 0.0 };
+        let force = curvature * gradient.value + pull - repulsion * curvature.abs() * close.value;
+        let size = (curvature.abs() + reach) * gradient.size
+            + repulsion * curvature.abs() * close.size
+            + curvature_size * (gradient.value.length() + repulsion * close.value.length());
         Sum { value: strength * force, size: strength * size }
     };
     (0..world.active()).map(force).collect()

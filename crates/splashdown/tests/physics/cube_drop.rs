@@ -57,7 +57,8 @@ fn cube(across: u32, keys: &str) -> (Simulation, f64) {
 /// particles. Cavities count.
 fn sphericity(particles: &Particles) -> (f64, f64) {
     let mut params = SurfaceParams::new(SPACING as f32);
-    // The particles of the surface are as rough as half a spacing; smoothing removes that and keeps the shape.
+    // The particles of the surface are as rough as half a spacing. Smoothing removes that, and rounds edges: the mesh of a
+    // cube of 8 spacings has a sphericity of 0.91, an exact cube 0.81.
     params.smoothing_iterations = 20;
     let (mesh, _) = reconstruct_with(&particles.positions, &params, &mut executor()).unwrap();
     let volume = particles.positions.len() as f64 * SPACING.powi(3);

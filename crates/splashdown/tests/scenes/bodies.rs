@@ -196,6 +196,20 @@ fn tension_with_a_pressure_that_is_not_negative_gives_a_warning() {
     }
 }
 
+/// With the implicit pressure the surface is complete under `csf`, and the force is larger for it.
+#[test]
+fn the_surface_is_complete_with_an_implicit_pressure_and_tension() {
+    let params = |method: &str, model: &str| {
+        let cube = CUBE.replace("method = \"wcsph\"", method);
+        let text = format!("{cube}surface_tension = \"{model}\"\nsupport_ratio = 3\n");
+        splashdown::schemes::params(&parse(&text).expect("valid"), 0)
+    };
+    let [implicit, explicit] = ["dfsph", "wcsph"].map(|name| params(&format!("method = \"{name}\""), "csf"));
+    assert!((implicit.tension_factor / explicit.tension_factor - 1.35).abs() < 1e-5);
+    assert!(implicit.surface_completion > 0.1);
+    assert_eq!(params("method = \"dfsph\"", "akinci2013").surface_completion, 0.0);
+}
+
 #[test]
 fn bodies_that_surface_tension_does_not_wet_give_a_warning() {
     let warnings = |model: &str| {

@@ -77,8 +77,9 @@ impl<K, const CORRECTED: bool> TensionForce<'_, K, CORRECTED> {
     }
 }
 
-/// The sums: numerator and denominator of the curvature, and the gradient of a uniform pressure.
-impl<K: Kernel, const CORRECTED: bool> PairSum<13, 5> for TensionForce<'_, K, CORRECTED> {
+/// The sums: numerator and denominator of the curvature, the gradient of a uniform pressure, and the part of it by close
+/// neighbours.
+impl<K: Kernel, const CORRECTED: bool> PairSum<13, 8> for TensionForce<'_, K, CORRECTED> {
     type Output = Vec4;
 
     #[inline(always)]
@@ -90,10 +91,10 @@ impl<K: Kernel, const CORRECTED: bool> PairSum<13, 5> for TensionForce<'_, K, CO
     }
 
     #[inline(always)]
-    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 13]) -> [V; 5] {
+    fn pair<V: Register>(&self, i: usize) -> impl Fn([V; 13]) -> [V; 8] {
         let (x, u) = (splat::<V>(self.positions[i]), self.direction(i).to_array().map(V::splat));
         let own = self.correction(i).map(V::splat);
-        let (one, repulsion) = (V::splat(1.0), V::splat(self.repulsion));
+        let one = V::splat(1.0);
         #[inline(always)]
         move |[x_j, y_j, z_j, a, b, c, weight, xx, yy, zz, xy, xz, yz]| {
             let d = difference(x, [x_j, y_j, z_j]);
@@ -109,9 +110,10 @@ impl<K: Kernel, const CORRECTED: bool> PairSum<13, 5> for TensionForce<'_, K, CO
                 xy * d[0] + yy * d[1] + yz * d[2],
                 xz * d[0] + yz * d[1] + zz * d[2],
             ];
-            let [l, m, n] = scaled(g * (one - closeness * repulsion), gradient);
+            let ([l, m, n], close) = (scaled(g, gradient), scaled(g * closeness, gradient));
             let weighted = g * weight;
-            [weighted * dot(difference([a, b, c], u), d), weighted * (r2 - along * along), l, m, n]
+            let turn = weighted * dot(difference([a, b, c], u), d);
+            [turn, weighted * (r2 - along * along), l, m, n, close[0], close[1], close[2]]
         }
     }
 
@@ -129,7 +131,7 @@ impl<K: Kernel, const CORRECTED: bool> PairSum<13, 5> for TensionForce<'_, K, CO
     }
 
     #[inline(always)]
-    fn finish(&self, i: usize, [turn, extent, a, b, c]: [f32; 5]) -> Vec4 {
+    fn finish(&self, i: usize, [turn, extent, a, b, c, close_x, close_y, close_z]: [f32; 8]) -> Vec4 {
         let params = self.params;
         let (limit, reach) = (params.largest_curvature, params.support_radius * params.support_radius);
         let inner = (2.0 * turn / extent.min(-1e-3 * reach)).clamp(-limit, limit);
@@ -139,6 +141,7 @@ impl<K: Kernel, const CORRECTED: bool> PairSum<13, 5> for TensionForce<'_, K, CO
         let [low, high] = self.images.nearness(self.positions[i].xyz(), params.support_radius);
         let near = params.wetting * (low + high);
         let along = near - Vec3::splat(near.element_sum());
-        (strength * (Vec3::splat(curvature) + along) * Vec3::new(a, b, c)).extend(0.0)
+        let repulsion = self.repulsion * curvature.abs() * Vec3::new(close_x, close_y, close_z);
+        (strength * ((Vec3::splat(curvature) + along) * Vec3::new(a, b, c) - repulsion)).extend(0.0)
     }
 }

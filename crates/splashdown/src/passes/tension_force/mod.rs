@@ -3,7 +3,8 @@
 //!
 //! a_i = w_i sigma kappa_i / rho0 sum_j V (B_i + B_j) grad W: minus the pressure force by a uniform pressure sigma kappa,
 //! with the matrices B of `passes::correction` where the pressure force has them. A drop of any shape with a uniform
-//! curvature is therefore in equilibrium with the pressure of Laplace, whatever the arrangement of its particles.
+//! curvature is therefore in equilibrium with the pressure of Laplace, whatever the arrangement of its particles, if no
+//! particles are close (see *Pairs*).
 //! w_i fades out where the normal is short, inside the fluid.
 //!
 //! The curvature, the sum of both principal ones (2 / R for a ball), is that of the unit vectors u = n / |n| of
@@ -17,8 +18,9 @@
 //!
 //! *Pairs* (`dfsph` only). In the first layers this force exceeds the pressure force, so that each particle is attracted by its
 //! neighbours as by a negative pressure, and particles pair up. `continuity` separates them by shifting. With the implicit
-//! pressure grad W is therefore multiplied by 1 - 4 (1 - 4 q) where q = |d| / H is below 1/4, the distance from which the gradient of
-//! Wendland C2 decreases towards zero. The factor is one at 1/4, and negative, a repulsion, below 3/16.
+//! pressure, neighbours with q = |d| / H below 1/4, the distance from which the gradient of Wendland C2 decreases towards zero, repel
+//! the particle: the sum over them of 4 (1 - 4 q) V (B_i + B_j) grad W, times w_i sigma |kappa_i| / rho0, is subtracted. Where the
+//! curvature is positive the attraction is one times that of the first formula at q = 1/4, zero at 3/16, and a repulsion below.
 //!
 //! Images have reflected normals, so that the surface meets walls at a right angle: without the energy of wetting, the
 //! surface and its image are one smooth surface.

@@ -57,16 +57,18 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
     let x = sorted_positions[i].xyz;
     let scale = 1.0 / params.support_radius;
     let reach = params.support_radius * params.support_radius;
-    let repulsion = select(0.0, REPULSION, params.is_implicit == 1u);
     var turn = 0.0;
     var extent = 0.0;
     var gradient = vec3(0.0);
+    // The part of the gradient by close neighbours.
+    var close = vec3(0.0);
     for (var left = reflections_near(x); left != 0u; left &= left - 1u) {
         let by = reflection(firstTrailingBit(left));
         let own_x = reflected_point(by, x);
         let own_u = by.sign * u;
         let own_correction = Symmetric(own.diagonal, by.sign.xxy * by.sign.yzz * own.others);
         gradient *= by.sign;
+        close *= by.sign;
         let rows = rows_of_image(x, own_x);
         for (var row = 0u; row < 9u; row++) {
             let range = row_range(rows, row);
@@ -83,8 +85,9 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
                     own_correction.diagonal + other.diagonal,
                     own_correction.others + other.others,
                 );
-                let attraction = 1.0 - repulsion * max(1.0 - q / CLOSE, 0.0);
-                gradient += g * attraction * applied(both, d);
+                let own_gradient = g * applied(both, d);
+                gradient += own_gradient;
+                close += max(1.0 - q / CLOSE, 0.0) * own_gradient;
                 let n = smooth_normals[j].xyz;
                 let weighted = g * normal_weight(n);
                 let along = dot(d, own_u);
@@ -93,6 +96,7 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
             }
         }
         gradient *= by.sign;
+        close *= by.sign;
     }
     let limit = params.largest_curvature;
     let inner = clamp(2.0 * turn / min(extent, -1e-3 * reach), -limit, limit);
@@ -100,5 +104,7 @@ fn tension_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wor
     // The force of each side acts along it.
     let near = params.wetting * (nearness_low(x) + nearness_high(x));
     let along = near - vec3(near.x + near.y + near.z);
-    accelerations[i] += vec4(params.tension_factor * own_weight * (vec3(curvature) + along) * gradient, 0.0);
+    let repulsion = select(0.0, REPULSION * abs(curvature), params.is_implicit == 1u) * close;
+    let force = (vec3(curvature) + along) * gradient - repulsion;
+    accelerations[i] += vec4(params.tension_factor * own_weight * force, 0.0);
 }

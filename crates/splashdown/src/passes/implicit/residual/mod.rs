@@ -20,8 +20,8 @@
 //! spread over several steps and not burst in one. The mean excess that is reported does not contain the addition.
 //!
 //! The forces are those of the sum alone. If the area of the surface grows, so does the sum of what is added, and the pressure
-//! k at the surface does the work k times the change. At a surface without tension k is small. With surface tension it is not:
-//! this work would reduce the tension by a fifth to a third in drops of ten and five spacings, so c is zero then.
+//! k at the surface does the work k times the change. At a surface without tension k is small. With `csf` it is not, and the
+//! force of the tension is larger for it (`CSF_PER_SIGMA` in `schemes/dfsph`). With the model of Akinci et al. c is zero.
 
 mod cpu;
 
