@@ -165,10 +165,12 @@ fn judged(figure: &Figure, unit: Unit) -> Result<String> {
     Ok(written.clone().find(tells).unwrap_or_else(|| number(figure.measured, unit, 3)))
 }
 
+/// The resolution and the column of a figure.
+type Place = (u64, String);
+
 /// The gates of a row. Where they differ, the columns or resolutions that each applies to are named.
 fn gates(columns: &[Column], cells: &[Vec<Option<&Figure>>], row: &Row) -> Result<String> {
-    // Each gate with the resolutions and columns of its figures.
-    let mut found: Vec<(&str, Vec<(u64, String)>)> = Vec::new();
+    let mut found: Vec<(&str, Vec<Place>)> = Vec::new();
     for (column, figures) in columns.iter().zip(cells).filter(|(column, _)| !column.is_gate()) {
         for (&size, figure) in column.at.as_ref().unwrap_or(&row.at).iter().zip(figures) {
             let Some(gate) = figure.and_then(|figure| figure.gate.as_deref()) else { continue };
@@ -179,17 +181,15 @@ fn gates(columns: &[Column], cells: &[Vec<Option<&Figure>>], row: &Row) -> Resul
             }
         }
     }
-    let columns = |places: &[(u64, String)]| distinct(places.iter().map(|(_, name)| name.clone()));
-    let sizes = |places: &[(u64, String)]| distinct(places.iter().map(|(size, _)| size.to_string()));
+    let columns = |places: &[Place]| distinct(places.iter().map(|(_, name)| name.clone()));
+    let sizes = |places: &[Place]| distinct(places.iter().map(|(size, _)| size.to_string()));
     // Names tell the gates apart if none of them has two gates.
-    let tell = |names: &dyn Fn(&[(u64, String)]) -> Vec<String>| {
-        let all: Vec<String> = found.iter().flat_map(|(_, places)| names(places)).collect();
-        distinct(all.iter()).len() == all.len()
-    };
-    let (by_column, by_size) = (tell(&columns), tell(&sizes));
-    let word = |(gate, places): &(&str, Vec<(u64, String)>)| -> Result<String> {
+    let are_distinct = |names: Vec<String>| distinct(names.iter()).len() == names.len();
+    let by_column = are_distinct(found.iter().flat_map(|(_, places)| columns(places)).collect());
+    let by_size = are_distinct(found.iter().flat_map(|(_, places)| sizes(places)).collect());
+    let word = |(gate, places): &(&str, Vec<Place>)| -> Result<String> {
         let limit = Limit::parse(gate)?.words(row.unit);
-        let both = |(size, name): &(u64, String)| format!("{name} at {size}");
+        let both = |(size, name): &Place| format!("{name} at {size}");
         let names = match (by_column, by_size) {
             (true, _) => columns(places),
             (_, true) => sizes(places),
