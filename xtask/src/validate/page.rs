@@ -213,7 +213,8 @@ fn drawings(records: &[Record]) -> Result<Vec<(String, String)>> {
     titles.iter().map(draw).collect()
 }
 
-fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+/// The items without repetitions, in their order.
+pub fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
     let mut found = Vec::new();
     for item in items {
         if !found.contains(&item) {

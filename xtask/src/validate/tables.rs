@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 
+use super::page::distinct;
 use super::record::{Figure, Record};
 
 /// The records of all cases, by name.
@@ -199,16 +200,6 @@ fn gates(columns: &[Column], cells: &[Vec<Option<&Figure>>], row: &Row) -> Resul
     };
     let words = found.iter().map(word).collect::<Result<Vec<String>>>()?;
     Ok(if words.is_empty() { "-".to_owned() } else { words.join("; ") })
-}
-
-fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
-    let mut found = Vec::new();
-    for item in items {
-        if !found.contains(&item) {
-            found.push(item);
-        }
-    }
-    found
 }
 
 /// A limit as the records contain it.
