@@ -47,7 +47,7 @@ struct TensionForce<'a, K, const CORRECTED: bool> {
     corrections: &'a [[Vec4; 2]],
     images: Images,
     scale: f32,
-    /// How steeply the attraction of close particles falls.
+    /// The strength of the repulsion of close particles at a distance of zero.
     repulsion: f32,
     kernel: PhantomData<K>,
 }

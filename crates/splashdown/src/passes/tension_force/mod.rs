@@ -20,7 +20,7 @@
 //! neighbours as by a negative pressure, and particles pair up. `continuity` separates them by shifting. With the implicit
 //! pressure, neighbours with q = |d| / H below 1/4, the distance from which the gradient of Wendland C2 decreases towards zero, repel
 //! the particle: the sum over them of 4 (1 - 4 q) V (B_i + B_j) grad W, times w_i sigma |kappa_i| / rho0, is subtracted. Where the
-//! curvature is positive the attraction is one times that of the first formula at q = 1/4, zero at 3/16, and a repulsion below.
+//! curvature is positive, a pair attracts as in the first formula at q = 1/4, not at all at q = 3/16, and repels below.
 //!
 //! Images have reflected normals, so that the surface meets walls at a right angle: without the energy of wetting, the
 //! surface and its image are one smooth surface.
@@ -56,7 +56,7 @@ bindings! {
     }
 }
 
-/// The distance over the support radius below which the attraction of two particles is reduced, and how steeply it falls.
+/// The distance over the support radius below which two particles repel each other, and how strongly at a distance of zero.
 const CLOSE: f32 = 0.25;
 const REPULSION: f32 = 4.0;
 
