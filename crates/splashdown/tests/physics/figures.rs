@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::cases::{Case, executor_name};
 use super::gates::{self, Gate};
+use super::recorded;
 
 /// Points of one curve.
 pub type Series = Vec<(f64, f64)>;
@@ -20,6 +21,8 @@ struct Row {
     /// The figure is zero in the exact solution, so that an order of convergence is defined.
     is_error: bool,
     gate: Option<&'static Gate>,
+    /// The figure of the committed run, if there is one.
+    recorded: Option<f64>,
 }
 
 impl Row {
@@ -28,12 +31,20 @@ impl Row {
         self.gate.is_none_or(|gate| gate.limit.holds(self.measured))
     }
 
-    /// The state of the gate; an error if it is missed, or met although it is recorded as missed.
+    /// Whether a figure that misses its gate is worse than that of the committed run.
+    fn is_worse(&self) -> bool {
+        let (Some(gate), Some(recorded)) = (self.gate, self.recorded) else { return false };
+        recorded::is_worse(&gate.limit, self.measured, recorded)
+    }
+
+    /// The state of the gate; an error if it is missed, if it is recorded as missed and met, or if the figure is worse than
+    /// recorded.
     fn verdict(&self) -> Result<&'static str, &'static str> {
         match (self.gate, self.holds()) {
             (None, _) => Ok("reported"),
             (Some(Gate { missed: None, .. }), true) => Ok("met"),
             (Some(Gate { missed: None, .. }), false) => Err("MISSED"),
+            (Some(_), false) if self.is_worse() => Err("WORSE than the committed figure in docs/validation"),
             (Some(_), false) => Ok("missed, as recorded"),
             (Some(_), true) => Err("MET, but recorded as missed: remove `missed` from gates.toml"),
         }
@@ -93,7 +104,8 @@ impl Figures {
         let gates = gates::of(self.case.name, &name);
         let gates = gates.unwrap_or_else(|| panic!("gates.toml has no gate: {}: {name}", self.case.name));
         let gate = gates.iter().find(|gate| gate.applies(&self.variant, self.across));
-        self.rows.push(Row { name, measured, is_error, gate });
+        let recorded = recorded::figure(self.case.name, &self.variant, self.across, &self.executor, &name);
+        self.rows.push(Row { name, measured, is_error, gate, recorded });
     }
 
     /// A gated figure that only `cargo xtask validate` measures.
@@ -105,7 +117,7 @@ impl Figures {
     pub fn report(&mut self, name: impl Into<String>, measured: f64) {
         let name = name.into();
         assert!(gates::of(self.case.name, &name).is_none(), "{}: {name} has a gate", self.case.name);
-        self.rows.push(Row { name, measured, is_error: false, gate: None });
+        self.rows.push(Row { name, measured, is_error: false, gate: None, recorded: None });
     }
 
     /// A plot on the page: dots are measurements or theory, lines are simulations.
@@ -121,7 +133,8 @@ impl Figures {
     /// Prints the figures and writes them to the folder `SPLASHDOWN_FIGURES`.
     ///
     /// # Errors
-    /// If a figure misses its gate, a gate recorded as missed is met, or a gate of the file has no figure.
+    /// If a figure misses its gate, a gate recorded as missed is met or its figure is worse than the committed one, or a gate
+    /// of the file has no figure.
     pub fn finish(self) -> Result<(), String> {
         let seconds = self.start.elapsed().as_secs_f64();
         let title = format!("{}, {}, {}, {}", self.case.name, self.variant, self.across, self.executor);
@@ -204,11 +217,14 @@ fn a_missed_gate_and_a_stale_record_of_one_are_errors() {
         let text =
             format!("at_most = 1.0\n{}", missed.map(|m| format!("missed = \"{m}\"")).unwrap_or_default());
         let gate = Box::leak(Box::new(toml::from_str::<Gate>(&text).unwrap()));
-        Row { name: "x".into(), measured: 0.5, is_error: false, gate: Some(gate) }
+        Row { name: "x".into(), measured: 0.5, is_error: false, gate: Some(gate), recorded: None }
     };
-    let (open, recorded) = (gate(None), gate(Some("1.2, as an example")));
+    let (open, stale) = (gate(None), gate(Some("1.2, as an example")));
     assert_eq!(open.verdict(), Ok("met"));
     assert!(Row { measured: 1.5, ..open }.verdict().is_err());
-    assert!(recorded.verdict().is_err());
-    assert_eq!(Row { measured: 1.5, ..recorded }.verdict(), Ok("missed, as recorded"));
+    assert!(stale.verdict().is_err());
+    let missed = |measured, recorded| Row { measured, recorded, ..gate(Some("1.2, as an example")) };
+    assert_eq!(missed(1.5, None).verdict(), Ok("missed, as recorded"));
+    assert_eq!(missed(1.25, Some(1.2)).verdict(), Ok("missed, as recorded"));
+    assert!(missed(1.5, Some(1.2)).verdict().is_err());
 }

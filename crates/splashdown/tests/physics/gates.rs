@@ -24,6 +24,23 @@ impl Limit {
         }
     }
 
+    /// How far a figure is beyond the limit; negative if the limit holds.
+    pub fn excess(&self, measured: f64) -> f64 {
+        match *self {
+            Self::AtMost(limit) => measured - limit,
+            Self::Within(low, high) => (low - measured).max(measured - high),
+            Self::Above(limit) => limit - measured,
+        }
+    }
+
+    /// The size of the limit, with which an excess is compared: half the width of a range.
+    pub fn scale(&self) -> f64 {
+        match *self {
+            Self::AtMost(limit) | Self::Above(limit) => limit.abs(),
+            Self::Within(low, high) => 0.5 * (high - low),
+        }
+    }
+
     pub fn words(&self) -> String {
         match self {
             Self::AtMost(limit) => format!("<= {limit}"),

@@ -15,6 +15,7 @@ mod drag;
 mod drop;
 mod figures;
 mod floating;
+mod floating_shapes;
 mod free_fall;
 mod gates;
 mod hydrostatics;
@@ -25,6 +26,7 @@ mod meshes;
 mod patch;
 mod planar_jet;
 mod progressive;
+mod recorded;
 mod ritter;
 mod roll;
 mod sessile;
@@ -58,6 +60,7 @@ const CASES: &[&[&cases::Case]] = &[
     drag::CASES,
     drop::CASES,
     floating::CASES,
+    floating_shapes::CASES,
     free_fall::CASES,
     hydrostatics::CASES,
     implicit::CASES,
