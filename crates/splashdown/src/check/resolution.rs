@@ -7,7 +7,7 @@ use super::validated::{Validated, validated};
 use crate::bodies::{BodyError, mesh_of, owner};
 use crate::boundary::closed_bounds;
 use crate::sample::mesh_title;
-use crate::scene::{MeshSource, Outlet, Scene, Shape};
+use crate::scene::{Body, DensityMode, MeshSource, Method, Motion, Outlet, Scene, Shape};
 use crate::solid::{self, Triangles, widths};
 
 /// Parts of solids and gaps are measured up to this many spacings.
@@ -19,6 +19,8 @@ const TOUCHING: f32 = 0.25;
 const THIN_SOLID: f32 = 1.0;
 /// Narrower gaps and thinner pieces of fluid have too few particles across for a velocity profile.
 const NARROW: f32 = 3.0;
+/// Bodies with thinner parts that float in fluid whose density is integrated have been measured to sink too deep.
+const THIN_FLOAT: f32 = 8.0;
 /// A shorter wave loses most of its height within a period.
 const SHORT_WAVE: f32 = 20.0;
 /// A lower wave is hidden by the steps of the layers of particles.
@@ -62,6 +64,9 @@ pub struct BodyWidths {
     /// A twentieth of its surface is at most this far from a body or a closed side, at the start; `None`: farther than 16
     /// spacings.
     pub gap: Option<f32>,
+    /// It moves freely, is lighter than the fluid, and the density of the fluid is integrated.
+    #[serde(skip)]
+    floats_in_continuity: bool,
 }
 
 /// A wave.
@@ -98,11 +103,19 @@ impl Resolution {
                 "{owner} is {spacings:.1} spacings across: a film of fewer than {NARROW} has no inner flow"
             ));
         }
-        for BodyWidths { owner, thickness, gap } in &self.bodies {
+        for BodyWidths { owner, thickness, gap, floats_in_continuity } in &self.bodies {
             if let Some(thickness) = thickness.filter(|&thickness| thickness < THIN_SOLID) {
                 all.push(format!(
                     "{owner} has parts {thickness:.1} spacings thick: fluid on both sides interacts through parts thinner than \
                      {THIN_SOLID}"
+                ));
+            }
+            if let Some(thickness) =
+                thickness.filter(|&thickness| *floats_in_continuity && thickness < THIN_FLOAT)
+            {
+                all.push(format!(
+                    "{owner} has parts {thickness:.1} spacings thick: with density = \"continuity\" floating bodies with parts thinner \
+                     than {THIN_FLOAT} sink too deep, and some go on sinking; set method = \"dfsph\""
                 ));
             }
             if let Some(gap) = gap.filter(|&gap| gap < NARROW) {
@@ -166,6 +179,13 @@ fn fluid(scene: &Scene) -> Result<Vec<Extent>, BodyError> {
 
 fn bodies(scene: &Scene) -> Result<Vec<BodyWidths>, BodyError> {
     let spacing = scene.fluid.particle_spacing;
+    let is_integrated =
+        scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Continuity;
+    let floats = |body: &Body| match body.motion {
+        Motion::Dynamic { density, .. } => density < scene.fluid.material.rest_density,
+        _ => false,
+    };
+    let floating: Vec<bool> = scene.bodies.iter().map(|body| is_integrated && floats(body)).collect();
     let named = scene.bodies.iter().map(|body| (owner("body", &body.name, &body.mesh), body));
     let (mut owners, mut surfaces) = (Vec::new(), Vec::new());
     for (owner, body) in named {
@@ -179,11 +199,13 @@ fn bodies(scene: &Scene) -> Result<Vec<BodyWidths>, BodyError> {
     let [low, high] = closed_bounds(domain.min, domain.max, bits);
     let found = widths(&surfaces, low, high, TOUCHING * spacing, WIDEST * spacing);
     let in_spacings = |width: Option<f32>| width.map(|width| width / spacing);
-    let each = owners.into_iter().zip(found).map(|((owner, is_shell), widths)| BodyWidths {
-        owner,
-        thickness: in_spacings(widths.thickness.filter(|_| !is_shell)),
-        gap: in_spacings(widths.gap),
-    });
+    let each =
+        owners.into_iter().zip(found).zip(floating).map(|(((owner, is_shell), widths), floats)| BodyWidths {
+            owner,
+            thickness: in_spacings(widths.thickness.filter(|_| !is_shell)),
+            gap: in_spacings(widths.gap),
+            floats_in_continuity: floats,
+        });
     Ok(each.collect())
 }
 
@@ -244,6 +266,22 @@ mod tests {
         assert!(coarse[0].contains("fluid.block[0]") && coarse[1].contains("plate"), "{coarse:?}");
         let fine = scene("", &PLATE.replace("0.01", "0.1")).replace("0.04]", "1]");
         assert_eq!(of(&fine).too_coarse(), Vec::<String>::new());
+    }
+
+    #[test]
+    fn thin_bodies_that_float_in_continuity_are_reported() {
+        let coarse = |height: &str, motion: &str, solver: &str| {
+            let plate = PLATE.replace("0.01", height);
+            let text = scene("", &format!("{plate}\nmotion = \"dynamic\"\n{motion}\n[solver]\n{solver}\n"));
+            of(&text.replace("0.04]", "1]")).too_coarse()
+        };
+        let continuity = "method = \"wcsph\"\ndensity = \"continuity\"";
+        let found = coarse("0.04", "density = 300", continuity);
+        assert!(found.len() == 1 && found[0].contains("plate") && found[0].contains("dfsph"), "{found:?}");
+        assert_eq!(coarse("0.04", "density = 300", "accuracy = \"engineering\"").len(), 1);
+        assert_eq!(coarse("0.04", "density = 300", "method = \"dfsph\"").len(), 0);
+        assert_eq!(coarse("0.04", "density = 2000", continuity).len(), 0);
+        assert_eq!(coarse("0.2", "density = 300", continuity).len(), 0);
     }
 
     /// In shallow water the length is the period times sqrt(g h), in deep water g T^2 / (2 pi).

@@ -17,9 +17,15 @@ fn correction_of(m: Symmetric) -> Correction {
     return Correction(Symmetric(scale * diagonal + missing, scale * others), determinant);
 }
 
-fn shifting(strain: Symmetric, determinant: f32) -> f32 {
+fn shifting(strain: Symmetric, rest_strain: f32, determinant: f32) -> f32 {
     let complete = clamp((determinant - 0.45) / 0.45, 0.0, 1.0);
-    return complete * 4.0 * params.support_radius * params.support_radius * sqrt(contract(strain, strain));
+    let deformation = max(sqrt(contract(strain, strain)) - rest_strain, 0.0);
+    return complete * 4.0 * params.support_radius * params.support_radius * deformation;
+}
+
+fn rest_strain() -> f32 {
+    let narrow = clamp(3.0 - params.support_radius / params.particle_spacing, 0.0, 1.0);
+    return narrow * 0.1 * sqrt(length(params.gravity) / params.support_radius);
 }
 
 fn volume_recovery(m: Symmetric, strain: Symmetric, determinant: f32) -> f32 {

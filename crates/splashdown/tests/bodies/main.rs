@@ -6,6 +6,7 @@ mod floating;
 mod many;
 mod motion;
 mod shared;
+mod still;
 mod walls;
 
 use glam::{Quat, Vec3};

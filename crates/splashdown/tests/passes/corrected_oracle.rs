@@ -101,6 +101,11 @@ pub fn continuity(world: &World, kernel: Kernel, boundary: Option<&[glam::Vec4]>
         // Zero at a determinant of 0.45, one at 0.9.
         let complete = ((determinant - 0.45) / 0.45).clamp(0.0, 1.0);
         let scale = away * 4.0 * c.support.powi(2);
+        // In scenes with bodies, fluid almost at rest is not shifted at a support of two spacings.
+        let narrow = if boundary.is_none() { 0.0 } else { 1.0 }
+            * (3.0 - c.support / f64::from(world.params.particle_spacing)).clamp(0.0, 1.0);
+        let rest = narrow * 0.1 * (world.params.gravity.as_dvec3().length() / c.support).sqrt();
+        let deformation = (contract(strain, strain).sqrt() - rest).max(0.0);
         Continued {
             density: (density, rho(i) + c.dt * rate_size + 4.0 * determinant_size * deficit),
             // Where a body fills a twentieth of the kernel, gradients are not corrected.
@@ -108,7 +113,7 @@ pub fn continuity(world: &World, kernel: Kernel, boundary: Option<&[glam::Vec4]>
                 + (1.0 - open) / f64::from(world.params.lattice_moment) * DMat3::IDENTITY,
             matrix_size: matrix_error,
             shifting: (
-                scale * complete * contract(strain, strain).sqrt(),
+                scale * complete * deformation,
                 scale * gradient_size * (1.0 + 3.0 * determinant_size),
             ),
         }

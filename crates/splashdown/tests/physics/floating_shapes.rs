@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use glam::{Quat, Vec3};
 use splashdown::BodyState;
-use splashdown::scene::{BoundaryKind, MeshShape, Motion};
+use splashdown::scene::{BoundaryKind, Motion};
 use splashdown_io::Mesh;
 
 use super::cases::{Case, Variant, is_validation};

@@ -60,8 +60,7 @@ pub fn figure(case: &str, variant: &str, across: u32, executor: &str, name: &str
 /// Whether a figure that misses its limit is farther from it than the record allows.
 pub fn is_worse(limit: &Limit, measured: f64, recorded: f64) -> bool {
     let allowed = SCATTER * limit.excess(recorded).max(0.0) + SHARE * limit.scale();
-    // Not a number is worse.
-    !(limit.excess(measured) <= allowed)
+    measured.is_nan() || limit.excess(measured) > allowed
 }
 
 #[test]

@@ -67,7 +67,9 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     var away = 1.0;
     var alone = whole;
     var fraction = 0.0;
+    var rest = 0.0;
     if (BODIES == 1u) {
+        rest = rest_strain();
         fraction = boundary_matrices[2u * i].w;
     }
     if (fraction > 0.0) {
@@ -90,6 +92,6 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     let next = without_tension(rho + state.dt * rate, corrected.determinant);
     densities[i] = vec2(next, pressure_at(next));
     let diagonal = open * corrected.matrix.diagonal + (1.0 - open) / params.lattice_moment;
-    corrections[2u * i] = vec4(diagonal, away * shifting(strain, corrected.determinant));
+    corrections[2u * i] = vec4(diagonal, away * shifting(strain, rest, corrected.determinant));
     corrections[2u * i + 1u] = vec4(open * corrected.matrix.others, 0.0);
 }

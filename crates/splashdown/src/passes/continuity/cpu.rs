@@ -6,7 +6,7 @@ use super::ContinuityBindings;
 use crate::boundary::{Images, Reflection};
 use crate::kernel::Kernel;
 use crate::pairs::{self, PairSum, Sorted, difference, dot, reflected, reflected_point, scaled, splat};
-use crate::passes::correction::{correction, shifting, volume_recovery, without_tension};
+use crate::passes::correction::{correction, rest_strain, shifting, volume_recovery, without_tension};
 use crate::simd::Register;
 use crate::state::{Params, Symmetric};
 
@@ -34,6 +34,7 @@ pub(super) fn continuity<K: Kernel, const BODIES: bool>(buffers: ContinuityBindi
         soft: 0.01 * params.support_radius * params.support_radius,
         diffusion: params.density_diffusion * params.support_radius * params.sound_speed,
         hydrostatic: (hydrostatic * params.body_acceleration(state.time)).extend(0.0),
+        rest_strain: if BODIES { rest_strain(params) } else { 0.0 },
         kernel: PhantomData,
     };
     let sorted =
@@ -55,6 +56,8 @@ struct Continuity<'a, K, const BODIES: bool> {
     diffusion: f32,
     /// The hydrostatic gradient of the density in kg/m^4.
     hydrostatic: Vec4,
+    /// Below this rate of strain the particles are not shifted.
+    rest_strain: f32,
     kernel: PhantomData<K>,
 }
 
@@ -133,7 +136,7 @@ impl<K: Kernel, const BODIES: bool> PairSum<8, 13> for Continuity<'_, K, BODIES>
         let rate = divergence + away * volume_recovery(self.params, whole, strain, determinant);
         let next = rho + self.dt * (rho * rate - self.diffusion * diffusion);
         let next = without_tension(self.params, next, determinant);
-        let shifting = away * shifting(self.params, strain, determinant);
+        let shifting = away * shifting(self.params, strain, self.rest_strain, determinant);
         let density = Vec2::new(next, self.params.pressure_at(next));
         let diagonal = open * b.diagonal + (1.0 - open) / self.params.lattice_moment;
         (density, [diagonal.extend(shifting), (open * b.others).extend(0.0)])
