@@ -41,9 +41,8 @@ pub(crate) fn shifting(params: &Params, strain: Symmetric, rest_strain: f32, det
 /// The rate of strain in 1/s of fluid around bodies that is almost at rest: 0.1 sqrt(g / H) at a support of two spacings,
 /// zero from three.
 ///
-/// The forces at bodies do not balance exactly, so that fluid at rest moves a little. With few neighbours, particles that
-/// this motion shifts come to rest elsewhere, which increases it: the speeds of still water around a floating torus grew
-/// tenfold in three seconds.
+/// Still water around bodies moves a little, because the forces at bodies do not balance exactly. With few neighbours this
+/// motion grew while it shifted particles: around a floating torus tenfold in three seconds.
 pub(crate) fn rest_strain(params: &Params) -> f32 {
     let narrow = (3.0 - params.support_radius / params.particle_spacing).clamp(0.0, 1.0);
     narrow * 0.1 * (params.gravity.length() / params.support_radius).sqrt()

@@ -102,9 +102,9 @@ pub fn continuity(world: &World, kernel: Kernel, boundary: Option<&[glam::Vec4]>
         let complete = ((determinant - 0.45) / 0.45).clamp(0.0, 1.0);
         let scale = away * 4.0 * c.support.powi(2);
         // In scenes with bodies, fluid almost at rest is not shifted at a support of two spacings.
-        let narrow = if boundary.is_none() { 0.0 } else { 1.0 }
-            * (3.0 - c.support / f64::from(world.params.particle_spacing)).clamp(0.0, 1.0);
-        let rest = narrow * 0.1 * (world.params.gravity.as_dvec3().length() / c.support).sqrt();
+        let narrow = (3.0 - c.support / f64::from(world.params.particle_spacing)).clamp(0.0, 1.0);
+        let with_bodies = f64::from(u8::from(boundary.is_some()));
+        let rest = with_bodies * narrow * 0.1 * (world.params.gravity.as_dvec3().length() / c.support).sqrt();
         let deformation = (contract(strain, strain).sqrt() - rest).max(0.0);
         Continued {
             density: (density, rho(i) + c.dt * rate_size + 4.0 * determinant_size * deficit),

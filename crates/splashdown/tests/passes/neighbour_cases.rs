@@ -48,6 +48,9 @@ pub fn cases() -> Vec<Case> {
             cases.push(continuity("closed", kernels, params(2.0), bodies));
             cases.push(continuity("wider support, open above", kernels, open, bodies));
         }
+        // Half of the particles are not shifted.
+        let heavy = Params { gravity: 200.0 * params(2.0).gravity, ..params(2.0) };
+        cases.push(continuity("almost at rest", kernels, heavy, true));
         cases.push(normals("closed", kernels, params(2.0)));
         let tension = Params { surface_tension: 0.4, ..params(2.0) };
         for (name, params) in [
