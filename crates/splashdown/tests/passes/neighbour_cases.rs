@@ -48,7 +48,7 @@ pub fn cases() -> Vec<Case> {
             cases.push(continuity("closed", kernels, params(2.0), bodies));
             cases.push(continuity("wider support, open above", kernels, open, bodies));
         }
-        // Half of the particles are not shifted.
+        // Some of the particles are too slow to be shifted.
         let heavy = Params { gravity: 200.0 * params(2.0).gravity, ..params(2.0) };
         cases.push(continuity("almost at rest", kernels, heavy, true));
         cases.push(normals("closed", kernels, params(2.0)));
@@ -229,6 +229,18 @@ fn continuity(name: &str, kernels: Kernels, params: Params, bodies: bool) -> Cas
     let suffix = if bodies { ".bodies" } else { "" };
     let label = format!("continuity.{}{suffix}", word(kernels));
     two_outputs(label, name, &world, input, outputs, heavier)
+}
+
+#[test]
+fn the_case_almost_at_rest_contains_both_kinds_of_particles() {
+    let shifted = |gravity: f32| {
+        let world = world(Params { gravity: gravity * params(2.0).gravity, ..params(2.0) });
+        let boundary = boundary_matrices(&world);
+        let steps = corrected_oracle::continuity(&world, C2.gradient, Some(&boundary));
+        steps.iter().filter(|step| step.shifting.0 > 0.0).count()
+    };
+    let (most, some) = (shifted(1.0), shifted(200.0));
+    assert!(some > most / 10 && some < most * 9 / 10, "{some} of {most}");
 }
 
 /// Contributions of bodies to the matrices of half of the particles.

@@ -139,8 +139,8 @@ impl Figures {
     /// Prints the figures and writes them to the folder `SPLASHDOWN_FIGURES`.
     ///
     /// # Errors
-    /// If a figure misses its gate, a gate recorded as missed is met or its figure is worse than the committed one, or a gate
-    /// of the file has no figure.
+    /// If a figure misses its gate, a gate recorded as missed is met or its figure is worse than its record, or a gate of the
+    /// file has no figure.
     pub fn finish(self) -> Result<(), String> {
         let seconds = self.start.elapsed().as_secs_f64();
         let title = format!("{}, {}, {}, {}", self.case.name, self.variant, self.across, self.executor);
