@@ -135,13 +135,21 @@ fn settings(arguments: &[String]) -> Result<Settings> {
     let mut words = arguments.iter();
     while let Some(word) = words.next() {
         let mut value = || words.next().with_context(|| format!("{word} needs a value"));
+        let mut count = || {
+            let text = value()?;
+            text.parse::<u64>().with_context(|| format!("{word} needs a whole number, not {text}"))
+        };
         match word.as_str() {
-            "--scenes" => settings.scenes = value()?.parse()?,
-            "--first" => settings.first = value()?.parse()?,
-            "--seed" => settings.seed = value()?.parse()?,
-            "--workers" => settings.workers = value()?.parse()?,
+            "--scenes" => settings.scenes = count()?,
+            "--first" => settings.first = count()?,
+            "--seed" => settings.seed = count()?,
+            "--workers" => settings.workers = usize::try_from(count()?)?,
             "--binary" => settings.binary = Some(value()?.into()),
-            "--shipped" => settings.shipped = Some(value()?.parse()?),
+            "--shipped" => {
+                let text = value()?;
+                let factor = text.parse().with_context(|| format!("--shipped needs a number, not {text}"))?;
+                settings.shipped = Some(factor);
+            }
             "--continuity" => settings.only.continuity = true,
             "--ignore" => settings.ignore = true,
             other => bail!("storms does not know {other}; see `cargo xtask help`"),
