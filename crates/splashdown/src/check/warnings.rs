@@ -48,6 +48,7 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         return Err(solver.complain("min_dt", message, &format!("at most {limit:.3e} s"), hint));
     }
     check_viscosity(scene, solver, derived);
+    check_negative_pressure(scene, solver);
     check_room(scene, root, solver);
     if scene.solver.surface_tension == SurfaceTension::Csf && scene.solver.method == Method::Dfsph {
         let message = "the pressure of dfsph is never negative: with surface_tension = \"csf\" drops hold \
@@ -140,6 +141,20 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         }
     }
     Ok(())
+}
+
+/// Warns of a surface that is pulled together.
+fn check_negative_pressure(scene: &Scene, solver: &Section<'_>) {
+    if scene.solver.pulls_surfaces_together() {
+        let message = "with density = \"summation\" negative pressures pull a free surface together: the sum of a particle there \
+                       lacks neighbours"
+            .to_owned();
+        let hint = match scene.solver.method {
+            Method::Mueller2003 => "use \"clamp\", unless the fluid fills the domain",
+            _ => "use \"clamp\" or density = \"continuity\", unless the fluid fills the domain",
+        };
+        solver.warn("negative_pressure", message, hint);
+    }
 }
 
 /// The relative error of the volume of a block above which there is a warning.

@@ -16,6 +16,7 @@ pub(super) struct Context {
     scripted: Vec<String>,
     cfl_factor: f32,
     is_integrated: bool,
+    pulls_surfaces_together: bool,
     is_mueller: bool,
     is_implicit: bool,
     /// The time in s in which the initial arrangement of particles expands.
@@ -58,6 +59,7 @@ impl Context {
             cfl_factor: scene.solver.cfl_factor,
             is_integrated: scene.solver.method == Method::Wcsph
                 && scene.solver.density == DensityMode::Continuity,
+            pulls_surfaces_together: scene.solver.pulls_surfaces_together(),
             is_mueller: scene.solver.method == Method::Mueller2003,
             is_implicit: scene.solver.method == Method::Dfsph,
             // A few tens of spacings at the speed of sound.
@@ -186,6 +188,11 @@ impl Context {
                  stiffness, or leave them out",
                 self.sound_speed
             );
+        }
+        if is_pressed && self.pulls_surfaces_together {
+            return "Likely cause: with a summed density, negative pressures pull the surface together. Set \
+                    solver.negative_pressure = \"clamp\""
+                .to_owned();
         }
         if self.starts_dense != Some(false) && time < self.early && !matches!(watched, Watched::InsideBodies)
         {

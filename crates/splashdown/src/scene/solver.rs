@@ -44,7 +44,7 @@ choices! {
     NegativePressure {
         /// They are set to zero: no clumping at the surface.
         Clamp = "clamp",
-        /// They are kept: needed to compare pressures with measurements.
+        /// They are kept: needed to compare pressures with measurements. With summation only for fluid that fills the domain.
         Keep = "keep",
     }
     /// The model of surface tension.
@@ -217,6 +217,14 @@ impl Solver {
     /// impacts.
     pub(crate) fn usual_tolerance(method: Method, surface_tension: SurfaceTension) -> f32 {
         if (method, surface_tension) == (Method::Dfsph, SurfaceTension::Csf) { 1e-4 } else { 0.001 }
+    }
+
+    /// Whether negative pressures act on free surfaces, where a summed density is below that at rest because the sum lacks
+    /// neighbours. The surface then implodes.
+    pub(crate) fn pulls_surfaces_together(&self) -> bool {
+        self.method != Method::Dfsph
+            && self.density == DensityMode::Summation
+            && self.negative_pressure == NegativePressure::Keep
     }
 
     /// The keys of the scene file that have no effect with `dfsph`.

@@ -143,7 +143,7 @@ impl Simulation {
 
     /// Reduces the next time step to what this speed allows.
     pub(super) async fn limit_time_step(&mut self, speed: f32) -> Result<(), SimulationError> {
-        let allowed = self.params.longest_step(speed, 0.0).max(self.params.min_dt);
+        let allowed = self.params.longest_step(speed, 0.0, 0.0).max(self.params.min_dt);
         let state = self.executor.fetch(self.fields.state).await?[0];
         self.stable_dt = state.stable_dt.min(allowed);
         let state = StepState { stable_dt: self.stable_dt, dt: self.stable_dt, ..state };

@@ -66,6 +66,11 @@ fn pressure_at(density: f32) -> f32 {
     return select(p, max(p, 0.0), params.clamp_pressure == 1u) + params.background_pressure;
 }
 
+// The integrated density without a drift; see Params::without_drift.
+fn without_drift(density: f32) -> f32 {
+    return min(density, 1.35 * params.rest_density);
+}
+
 // The length of the next step; see Params::step_length.
 fn step_length(stable: f32, remaining: f32, is_first: bool) -> f32 {
     if (params.is_implicit == 1u) {
@@ -79,7 +84,7 @@ fn step_length(stable: f32, remaining: f32, is_first: bool) -> f32 {
 }
 
 // The longest stable step without the limit by the implicit pressure; see Params::longest_step.
-fn longest_step(speed: f32, acceleration: f32) -> f32 {
+fn longest_step(speed: f32, acceleration: f32, excess: f32) -> f32 {
     let h = 0.5 * params.support_radius;
     let c = params.cfl_factor;
     var longest = min(params.max_dt, 0.125 * h * h / max(params.viscosity, 1e-20));
@@ -87,6 +92,8 @@ fn longest_step(speed: f32, acceleration: f32) -> f32 {
         return min(longest, c * params.particle_spacing / max(speed, 1e-20));
     }
     longest = min(longest, c * h / (params.sound_speed + speed));
+    let compressed = params.sound_speed * pow(1.0 + excess, 0.5 * (params.exponent - 1.0));
+    longest = min(longest, 0.9 * h / (compressed + speed));
     longest = min(longest, c * sqrt(h / max(acceleration, 1e-20)));
     longest = min(longest, c * 0.4 * params.particle_spacing / max(speed, 1e-20));
     return min(longest, 0.17 * h / max(params.density_diffusion * params.sound_speed, 1e-20));

@@ -25,7 +25,7 @@ fn finish_step() {
     counters[COUNTER_SHORTEN] = 0u;
     let pressure = bitcast<f32>(counters[COUNTER_MAX_PRESSURE]);
     counters[COUNTER_MAX_PRESSURE] = 0u;
-    var stable = longest_step(max(speed, state.body_speed), acceleration);
+    var stable = longest_step(max(speed, state.body_speed), acceleration, excess);
     if (params.is_implicit == 1u) {
         stable = min(stable, select(1.5 * state.stable_dt, 0.7 * min(state.stable_dt, state.dt), is_slow));
         stable = min(stable, pressure_limit(pressure));

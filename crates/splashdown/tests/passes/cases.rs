@@ -82,7 +82,7 @@ const BODY_SPEED: f32 = 70.0;
 fn begin(name: &str, length: f32, stable_dt: f32, is_implicit: u32) -> Case {
     let params = Params { particle_count: 1234, is_implicit, ..params(2.0) };
     let old = StepState { done: 1, run_count: 0, steps: 77, stable_dt, ..state(1234) };
-    let limits = limits(&params, old.max_speed.max(BODY_SPEED).into(), old.max_acceleration.into());
+    let limits = limits(&params, old.max_speed.max(BODY_SPEED).into(), old.max_acceleration.into(), 0.0);
     let stable = limits.into_iter().fold(f64::from(stable_dt), f64::min) as f32;
     let expected = StepState {
         time: 12.5,
@@ -122,9 +122,10 @@ fn end_step_cases() -> Vec<Case> {
     let calm = [0.5, 10.0, 0.002, 0.0];
     let implicit = Params { is_implicit: 1, implicit_viscosity: 0.0, ..params(2.0) };
     let viscous = Params { implicit_viscosity: 0.02, ..implicit };
-    let ways: [(&str, StepState, [f32; 4], Params); 15] = [
+    let ways: [(&str, StepState, [f32; 4], Params); 16] = [
         ("grown by a tenth", StepState { stable_dt: 1e-4, ..state }, calm, params(2.0)),
         ("limited by sound", state, calm, params(2.0)),
+        ("limited by compressed fluid", state, [0.5, 10.0, 0.2, 0.0], params(2.0)),
         ("limited by acceleration", state, [0.5, 1e6, 0.0, 0.0], params(2.0)),
         ("limited by speed", state, [300.0, 10.0, 0.2, 0.0], Params { sound_speed: 0.1, ..params(2.0) }),
         ("limited by viscosity", state, calm, Params { viscosity: 5.0, ..params(2.0) }),
@@ -209,7 +210,7 @@ fn end_step(name: &str, state: StepState, maxima: [f32; 4], params: Params) -> C
 }
 
 /// The limits of Monaghan and Morris in s, in f64, without that by the pressure.
-fn limits(params: &Params, speed: f64, acceleration: f64) -> Vec<f64> {
+fn limits(params: &Params, speed: f64, acceleration: f64, excess: f64) -> Vec<f64> {
     let p = |value: f32| f64::from(value);
     let (h, factor) = (0.5 * p(params.support_radius), p(params.cfl_factor));
     let common = [p(params.max_dt), 0.125 * h * h / p(params.viscosity)];
@@ -218,6 +219,7 @@ fn limits(params: &Params, speed: f64, acceleration: f64) -> Vec<f64> {
     } else {
         vec![
             factor * h / (p(params.sound_speed) + speed),
+            0.9 * h / (p(params.sound_speed) * (1.0 + excess).powf(0.5 * (p(params.exponent) - 1.0)) + speed),
             factor * (h / acceleration).sqrt(),
             factor * 0.4 * p(params.particle_spacing) / speed,
             0.17 * h / (p(params.density_diffusion) * p(params.sound_speed)),
@@ -242,8 +244,8 @@ pub fn next_state(
     } else {
         1.1 * p(state.stable_dt)
     };
-    let least =
-        limits(params, speed.max(p(state.body_speed)), acceleration).into_iter().fold(grown, f64::min);
+    let fastest = speed.max(p(state.body_speed));
+    let least = limits(params, fastest, acceleration, excess).into_iter().fold(grown, f64::min);
     let stable = least.max(p(params.min_dt));
     // In the same order as the pass: the remaining time is a difference, and another rounding would change it.
     let complete = state.dt >= state.remaining;

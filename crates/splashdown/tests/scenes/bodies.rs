@@ -196,6 +196,21 @@ fn tension_with_a_pressure_that_is_not_negative_gives_a_warning() {
     }
 }
 
+#[test]
+fn negative_pressures_with_a_summed_density_give_a_warning() {
+    let warnings = |keys: &str| {
+        let scene = parse(&CUBE.replace("method = \"wcsph\"", keys)).expect("valid");
+        scene.warnings.iter().map(ToString::to_string).collect::<String>()
+    };
+    let keep = "negative_pressure = \"keep\"";
+    for method in ["wcsph", "mueller2003"] {
+        let warned = warnings(&format!("method = \"{method}\"\n{keep}"));
+        assert!(warned.contains("pull a free surface together") && warned.contains("clamp"), "{warned}");
+        assert!(!warnings(&format!("method = \"{method}\"")).contains("pull"));
+    }
+    assert!(!warnings(&format!("method = \"wcsph\"\ndensity = \"continuity\"\n{keep}")).contains("pull"));
+}
+
 /// With the implicit pressure the surface is complete under `csf`, and the force is larger for it.
 #[test]
 fn the_surface_is_complete_with_an_implicit_pressure_and_tension() {

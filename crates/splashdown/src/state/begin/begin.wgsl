@@ -11,7 +11,7 @@ fn begin() {
     state.time = state.frame_start;
     state.remaining = length;
     // The parameters may have changed since the last step.
-    let longest = longest_step(max(state.max_speed, state.body_speed), state.max_acceleration);
+    let longest = longest_step(max(state.max_speed, state.body_speed), state.max_acceleration, 0.0);
     state.stable_dt = max(min(state.stable_dt, longest), params.min_dt);
     state.dt = step_length(state.stable_dt, length, true);
     state.done = 0u;

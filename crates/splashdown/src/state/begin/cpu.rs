@@ -9,7 +9,7 @@ pub(super) fn begin(buffers: BeginBindings<'_>) {
     state.time = state.frame_start;
     state.remaining = length;
     // The parameters may have changed since the last step.
-    let longest = params.longest_step(state.max_speed.max(state.body_speed), state.max_acceleration);
+    let longest = params.longest_step(state.max_speed.max(state.body_speed), state.max_acceleration, 0.0);
     state.stable_dt = state.stable_dt.min(longest).max(params.min_dt);
     state.dt = params.step_length(state.stable_dt, length, true);
     state.done = 0;

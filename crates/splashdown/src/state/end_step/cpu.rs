@@ -23,7 +23,7 @@ pub(crate) fn finish_step(params: &Params, state: &mut StepState, counters: &mut
     } else {
         1.1 * state.stable_dt
     };
-    let mut stable = grown.min(params.longest_step(speed.max(state.body_speed), acceleration));
+    let mut stable = grown.min(params.longest_step(speed.max(state.body_speed), acceleration, excess));
     if stable < params.min_dt {
         stable = params.min_dt;
         state.too_small = 1;
