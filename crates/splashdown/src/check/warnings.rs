@@ -145,7 +145,7 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
 
 /// Warns of a surface that is pulled together.
 fn check_negative_pressure(scene: &Scene, solver: &Section<'_>) {
-    if scene.solver.pulls_surfaces_together() {
+    if scene.solver.pulls_surfaces_together() && !is_full(scene) {
         let message = "with density = \"summation\" negative pressures pull a free surface together: the sum of a particle there \
                        lacks neighbours"
             .to_owned();
@@ -179,21 +179,36 @@ fn check_viscosity(scene: &Scene, solver: &Section<'_>, derived: &Derived) {
     solver.warn("method", message, "method = \"dfsph\" integrates the viscosity implicitly, in longer steps");
 }
 
+fn is_closed(scene: &Scene) -> bool {
+    scene.domain.closed.as_flattened().iter().all(|&closed| closed)
+}
+
+/// The numbers of initial particles and of particles for which the domain has room. Only the particles of blocks are
+/// counted, with those that bodies displace: filling meshes takes time.
+fn filling(scene: &Scene) -> [f64; 2] {
+    let particle = f64::from(scene.fluid.particle_spacing).powi(3);
+    let room = (scene.domain.max - scene.domain.min).as_dvec3().element_product() / particle;
+    [lattice::count(&scene.domain, &scene.fluid) as f64, room]
+}
+
+/// True if fluid fills the closed domain, so that it has no free surface.
+fn is_full(scene: &Scene) -> bool {
+    let [initial, room] = filling(scene);
+    is_closed(scene) && initial >= FULL * room
+}
+
 /// Warns of closed domains that the fluid fills.
 fn check_room(scene: &Scene, root: &Section<'_>, solver: &Section<'_>) {
-    let is_closed = scene.domain.closed.as_flattened().iter().all(|&closed| closed);
-    if !is_closed || !scene.sinks.is_empty() {
+    if !is_closed(scene) || !scene.sinks.is_empty() {
         return;
     }
     let particle = f64::from(scene.fluid.particle_spacing).powi(3);
-    let room = (scene.domain.max - scene.domain.min).as_dvec3().element_product() / particle;
-    // Only the particles of blocks are counted, with those that bodies displace: filling meshes takes time.
-    let initial = lattice::count(&scene.domain, &scene.fluid) as f64;
+    let [initial, room] = filling(scene);
     // Without a folder no file is opened.
     let opens_files = scene.emitters.iter().any(|emitter| matches!(emitter.outlet, Outlet::Mesh(_)));
     let is_known = root.has_folder() || !opens_files;
     let emitted = if is_known { Built::of(scene).emitted(scene).unwrap_or_default().0 as f64 } else { 0.0 };
-    if scene.solver.method == Method::Dfsph && initial >= FULL * room {
+    if scene.solver.method == Method::Dfsph && is_full(scene) {
         let message = "the fluid fills the closed domain: without a free surface nothing determines the level of an implicit \
                        pressure, and fluid that moves can end the run"
             .to_owned();

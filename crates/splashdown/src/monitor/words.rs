@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::Watched;
 use crate::scene::{DensityMode, Method, Motion, Scene};
+use crate::state::HIGHEST_DENSITY;
 
 /// What the monitor knows of the scene for its messages.
 #[derive(Clone, Debug)]
@@ -130,7 +131,10 @@ impl Context {
                 format!("the fluid has gained {:.1} % energy from nowhere", 100.0 * value)
             }
             Watched::Compression => {
-                format!("the density is up to {:.0} % above the rest density", 100.0 * value)
+                // An integrated density is bounded.
+                let bounded = self.is_integrated && value > 0.99 * f64::from(HIGHEST_DENSITY - 1.0);
+                let up_to = if bounded { "at least" } else { "up to" };
+                format!("the density is {up_to} {:.0} % above the rest density", 100.0 * value)
             }
             Watched::DensePart => {
                 format!("one particle in a hundred is more than {:.0} % too dense", 100.0 * value)
@@ -189,16 +193,18 @@ impl Context {
                 self.sound_speed
             );
         }
-        if is_pressed && self.pulls_surfaces_together {
-            return "Likely cause: with a summed density, negative pressures pull the surface together. Set \
-                    solver.negative_pressure = \"clamp\""
-                .to_owned();
-        }
         if self.starts_dense != Some(false) && time < self.early && !matches!(watched, Watched::InsideBodies)
         {
             return "Likely cause: the particles overlap at the start. Move pieces of fluid, bodies and emitters apart by a \
                     multiple of particle_spacing, and check imported particles with `splashdown check`"
                 .to_owned();
+        }
+        if is_pressed && self.pulls_surfaces_together {
+            let other = if self.is_mueller { "" } else { ", or density = \"continuity\"" };
+            return format!(
+                "Likely cause: with a summed density, negative pressures pull the surface together. Set \
+                 solver.negative_pressure = \"clamp\"{other}"
+            );
         }
         match neighbour {
             Neighbour::Body(name) if self.scripted.contains(name) => format!(

@@ -44,7 +44,7 @@ choices! {
     NegativePressure {
         /// They are set to zero: no clumping at the surface.
         Clamp = "clamp",
-        /// They are kept: needed to compare pressures with measurements. With summation only for fluid that fills the domain.
+        /// They are kept: needed to compare pressures with measurements. With summation, only for fluid that fills the domain.
         Keep = "keep",
     }
     /// The model of surface tension.
@@ -138,7 +138,7 @@ impl Solver {
     /// The defaults of a method and a computation of the density.
     pub fn with(method: Method, density: DensityMode) -> Self {
         // The continuity form damps impacts by a limited dissipation. The explicit steps of `wcsph` are at most half of the
-        // longest stable one, 1.72 (kernel/tests.rs), because fluid that an impact compresses carries sound faster.
+        // longest stable one, 1.72 (kernel/tests.rs).
         let (negative_pressure, artificial_viscosity, cfl_factor) = match (method, density) {
             (Method::Dfsph, _) => (NegativePressure::Clamp, 0.01, 0.7),
             (Method::Mueller2003, _) => (NegativePressure::Clamp, 0.05, 0.3),

@@ -117,7 +117,7 @@ impl Simulation {
                     fastest = fastest.max(velocity.xyz().length());
                 }
                 self.executor.write(self.fields.velocities, &all)?;
-                self.limit_time_step(fastest).await?;
+                self.limit_time_step(fastest, 0.0).await?;
             }
         }
         Ok(())
@@ -141,9 +141,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// Reduces the next time step to what this speed allows.
-    pub(super) async fn limit_time_step(&mut self, speed: f32) -> Result<(), SimulationError> {
-        let allowed = self.params.longest_step(speed, 0.0, 0.0).max(self.params.min_dt);
+    /// Reduces the next time step to what this speed in m/s and relative excess of density allow.
+    pub(super) async fn limit_time_step(&mut self, speed: f32, excess: f32) -> Result<(), SimulationError> {
+        let allowed = self.params.longest_step(speed, 0.0, excess).max(self.params.min_dt);
         let state = self.executor.fetch(self.fields.state).await?[0];
         self.stable_dt = state.stable_dt.min(allowed);
         let state = StepState { stable_dt: self.stable_dt, dt: self.stable_dt, ..state };

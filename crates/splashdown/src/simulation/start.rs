@@ -126,10 +126,12 @@ impl Simulation {
         simulation.executor.write(simulation.fields.frame_input, &StepState::frame_input(0.0, 0.0, 0.0))?;
         simulation.executor.run(&simulation.prime)?;
         simulation.count().await?;
-        // The estimate of the scene does not know the velocities of particles from files and programs.
+        // The estimate of the scene does not know the velocities and densities of particles from files and programs.
         let fastest = particles.velocities.iter().map(|&v| Vec3::from(v).length()).fold(0.0, f32::max);
-        if fastest > 0.0 {
-            simulation.limit_time_step(fastest).await?;
+        let densest = particles.densities.iter().copied().fold(0.0, f32::max);
+        let excess = (densest / simulation.params.rest_density - 1.0).max(0.0);
+        if fastest > 0.0 || excess > 0.0 {
+            simulation.limit_time_step(fastest, excess).await?;
         }
         Ok(simulation)
     }

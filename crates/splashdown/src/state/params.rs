@@ -112,12 +112,13 @@ gpu_struct! {
     }
 }
 
-/// The `cfl_factor` for the speed of sound in the densest fluid, half of the longest stable step. With 1.0 a block that was
-/// thrown into a corner gained energy.
+/// The least `cfl_factor` for the speed of sound in the densest fluid, about half of the longest stable step. With 1.0 a block
+/// that was thrown into a corner gained energy.
 const COMPRESSED_FACTOR: f32 = 0.9;
 
-/// The largest integrated density over the rest density. An impact at half the speed of sound stays below it.
-const HIGHEST_DENSITY: f32 = 1.35;
+/// The largest integrated density over the rest density. An impact on one wall at half the speed of sound stays below it
+/// with the exponent 7.
+pub(crate) const HIGHEST_DENSITY: f32 = 1.35;
 
 impl Params {
     /// [`stretched_from`](Self::stretched_from) of explicit schemes, in spacings. Nearer particles are in inner edges and corners,
@@ -162,7 +163,7 @@ impl Params {
         } else {
             let compressed = self.sound_speed * (1.0 + excess).powf(0.5 * (self.exponent - 1.0));
             (c * h / (self.sound_speed + speed))
-                .min(COMPRESSED_FACTOR * h / (compressed + speed))
+                .min(c.max(COMPRESSED_FACTOR) * h / (compressed + speed))
                 .min(c * (h / acceleration.max(1e-20)).sqrt())
                 .min(c * 0.4 * self.particle_spacing / speed.max(1e-20))
                 .min(0.17 * h / (self.density_diffusion * self.sound_speed).max(1e-20))
@@ -191,11 +192,13 @@ impl Params {
         (if self.clamp_pressure == 1 { p.max(0.0) } else { p }) + self.background_pressure
     }
 
-    /// The integrated density in kg/m^3 without a drift that no motion of fluid explains. Between two surfaces that approach
-    /// each other to less than a spacing the density of a particle grows until it is thrown out.
+    /// An integrated density in kg/m^3, at most [`HIGHEST_DENSITY`] times that at rest. Between two surfaces that approach
+    /// each other to less than a spacing, the density of a particle grows without bound. NaN and infinity are kept, so that
+    /// the integration finds and reports them.
     #[inline(always)]
-    pub fn without_drift(&self, density: f32) -> f32 {
-        density.min(HIGHEST_DENSITY * self.rest_density)
+    pub fn bounded_density(&self, density: f32) -> f32 {
+        let highest = HIGHEST_DENSITY * self.rest_density;
+        if density > highest && density.is_finite() { highest } else { density }
     }
 
     /// True if a finite point lies outside the domain.

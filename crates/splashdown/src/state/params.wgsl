@@ -66,9 +66,10 @@ fn pressure_at(density: f32) -> f32 {
     return select(p, max(p, 0.0), params.clamp_pressure == 1u) + params.background_pressure;
 }
 
-// The integrated density without a drift; see Params::without_drift.
-fn without_drift(density: f32) -> f32 {
-    return min(density, 1.35 * params.rest_density);
+// See Params::bounded_density.
+fn bounded_density(density: f32) -> f32 {
+    let is_number = (bitcast<u32>(density) & 0x7f800000u) != 0x7f800000u;
+    return select(density, 1.35 * params.rest_density, is_number && density > 1.35 * params.rest_density);
 }
 
 // The length of the next step; see Params::step_length.
@@ -93,7 +94,7 @@ fn longest_step(speed: f32, acceleration: f32, excess: f32) -> f32 {
     }
     longest = min(longest, c * h / (params.sound_speed + speed));
     let compressed = params.sound_speed * pow(1.0 + excess, 0.5 * (params.exponent - 1.0));
-    longest = min(longest, 0.9 * h / (compressed + speed));
+    longest = min(longest, max(c, 0.9) * h / (compressed + speed));
     longest = min(longest, c * sqrt(h / max(acceleration, 1e-20)));
     longest = min(longest, c * 0.4 * params.particle_spacing / max(speed, 1e-20));
     return min(longest, 0.17 * h / max(params.density_diffusion * params.sound_speed, 1e-20));

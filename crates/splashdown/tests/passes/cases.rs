@@ -121,11 +121,15 @@ fn end_step_cases() -> Vec<Case> {
     let state = state(100);
     let calm = [0.5, 10.0, 0.002, 0.0];
     let implicit = Params { is_implicit: 1, implicit_viscosity: 0.0, ..params(2.0) };
+    let long = StepState { stable_dt: 5e-3, ..state };
+    let large = Params { cfl_factor: 0.8, ..params(2.0) };
+    let softer = Params { exponent: 5.0, ..large };
     let viscous = Params { implicit_viscosity: 0.02, ..implicit };
-    let ways: [(&str, StepState, [f32; 4], Params); 16] = [
+    let ways: [(&str, StepState, [f32; 4], Params); 17] = [
         ("grown by a tenth", StepState { stable_dt: 1e-4, ..state }, calm, params(2.0)),
-        ("limited by sound", state, calm, params(2.0)),
-        ("limited by compressed fluid", state, [0.5, 10.0, 0.2, 0.0], params(2.0)),
+        ("limited by sound", long, calm, params(2.0)),
+        ("limited by compressed fluid", long, [0.5, 10.0, 0.2, 0.0], large),
+        ("limited by compressed fluid, another exponent", long, [0.5, 10.0, 0.3, 0.0], softer),
         ("limited by acceleration", state, [0.5, 1e6, 0.0, 0.0], params(2.0)),
         ("limited by speed", state, [300.0, 10.0, 0.2, 0.0], Params { sound_speed: 0.1, ..params(2.0) }),
         ("limited by viscosity", state, calm, Params { viscosity: 5.0, ..params(2.0) }),
@@ -168,6 +172,19 @@ fn end_step_cases() -> Vec<Case> {
     counters[StepCounters::SHORTEN] = 1;
     cases.push(shortened);
     cases
+}
+
+/// The least limit of a step is that of the densest fluid, by a tenth and more.
+#[test]
+fn compressed_fluid_limits_the_steps_of_its_cases() {
+    let large = Params { cfl_factor: 0.8, ..params(2.0) };
+    for (exponent, excess) in [(7.0, 0.2), (5.0, 0.3)] {
+        let least = |excess| {
+            let limits = limits(&Params { exponent, ..large }, 0.5, 10.0, excess);
+            limits.into_iter().fold(5.5e-3, f64::min)
+        };
+        assert!(least(excess) < 0.9 * least(0.0), "{exponent}: {} {}", least(excess), least(0.0));
+    }
 }
 
 fn end_step(name: &str, state: StepState, maxima: [f32; 4], params: Params) -> Case {
@@ -219,7 +236,8 @@ fn limits(params: &Params, speed: f64, acceleration: f64, excess: f64) -> Vec<f6
     } else {
         vec![
             factor * h / (p(params.sound_speed) + speed),
-            0.9 * h / (p(params.sound_speed) * (1.0 + excess).powf(0.5 * (p(params.exponent) - 1.0)) + speed),
+            factor.max(0.9) * h
+                / (p(params.sound_speed) * (1.0 + excess).powf(0.5 * (p(params.exponent) - 1.0)) + speed),
             factor * (h / acceleration).sqrt(),
             factor * 0.4 * p(params.particle_spacing) / speed,
             0.17 * h / (p(params.density_diffusion) * p(params.sound_speed)),

@@ -27,7 +27,7 @@ fn boundary_density(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_
                 flow += along(matrix, n) * dot(contacts[2u * i + k].slope, v.xyz - wall);
             }
         }
-        rho = without_drift(rho - state.dt * 2.0 * v.w * flow);
+        rho = bounded_density(rho - state.dt * 2.0 * v.w * flow);
     } else {
         rho += params.rest_density * min(contacts[2u * i].density + contacts[2u * i + 1u].density, 1.0);
     }

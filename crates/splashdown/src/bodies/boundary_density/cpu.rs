@@ -42,7 +42,7 @@ pub(super) fn boundary_density<const CONTINUITY: bool>(buffers: BoundaryDensityB
                         matrix.along(contact.direction(scale)) * contact.slope.dot(approach)
                     })
                     .sum();
-                rho = params.without_drift(rho - state.dt * 2.0 * v.w * flow);
+                rho = params.bounded_density(rho - state.dt * 2.0 * v.w * flow);
             } else {
                 rho += params.rest_density * (pair[0].density + pair[1].density).min(1.0);
             }

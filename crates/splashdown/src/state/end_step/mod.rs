@@ -1,7 +1,8 @@
 //! Ends a step: reads and resets the maxima, and computes the next time step on the device.
 //!
-//! With h = H / 2: dt = min(C h / (c0 + |v|max), C sqrt(h / |a|max), 0.4 spacing C / |v|max, 0.125 h^2 / nu,
-//! 0.17 h / (delta c0), max_dt) (Monaghan 1992; Morris, Fox & Zhu 1997), at most a tenth more than the last. The maxima
+//! With h = H / 2: dt = min(C h / (c0 + |v|max), max(C, 0.9) h / (c + |v|max), C sqrt(h / |a|max), 0.4 spacing C / |v|max,
+//! 0.125 h^2 / nu, 0.17 h / (delta c0), max_dt) (Monaghan 1992; Morris, Fox & Zhu 1997), at most a tenth more than the last.
+//! c = c0 (rho_max / rho0)^((exponent - 1) / 2) is the speed of sound in the densest fluid. The maxima
 //! are those of the step that ends, so the time step lags by one step; velocities are limited for this reason.
 //! [`Params::step_length`] divides the remaining time of the frame.
 //!
