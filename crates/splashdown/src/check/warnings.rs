@@ -125,7 +125,7 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
             "probe {:?} measures pressure, but with density = \"summation\" the pressure near bodies is too low",
             gauge.name
         );
-        solver.warn("density", message, "set accuracy = \"engineering\" under [solver] to measure pressure");
+        solver.warn("density", message, "to measure pressure set accuracy = \"engineering\" under [solver], or for impacts on bodies method = \"dfsph\"");
     }
     for (index, sampler) in Sampler::all(&scene.domain, &scene.fluid).iter().enumerate() {
         let [x, y, z] = sampler.layers();
