@@ -1,6 +1,7 @@
 //! Emitters and sinks in whole scenes.
 
 use glam::Vec3;
+use splashdown::monitor::Level;
 use splashdown::scene::{Emitter, Method, Outlet, Scene, Sink, SinkRegion};
 use splashdown::{Event, Run, RunOptions, Simulation, Stats};
 use splashdown_gpu::{CpuExecutor, Executor, testing};
@@ -230,7 +231,8 @@ fn a_tap_one_particle_wide_fills_a_tank() {
         for event in Run::new(&scene, RunOptions::new(&scene).with_device(splashdown::Device::Cpu)).unwrap() {
             match event.unwrap() {
                 Event::Frame(frame) => highest = highest.max(frame.stats.max_speed.into()),
-                Event::Alarm(alarm) => panic!("{method}: {}", alarm.message),
+                // A particle of a splash may be a note.
+                Event::Alarm(alarm) if alarm.level >= Level::Warning => panic!("{method}: {}", alarm.message),
                 Event::Finished(summary) => assert!(summary.stats.emitted > 20, "{method}"),
                 _ => {}
             }

@@ -4,7 +4,6 @@ use glam::Vec3;
 
 use super::Watched;
 use crate::scene::{DensityMode, Method, Motion, Scene};
-use crate::state::HIGHEST_DENSITY;
 
 /// What the monitor knows of the scene for its messages.
 #[derive(Clone, Debug)]
@@ -131,10 +130,7 @@ impl Context {
                 format!("the fluid has gained {:.1} % energy from nowhere", 100.0 * value)
             }
             Watched::Compression => {
-                // An integrated density is bounded.
-                let bounded = self.is_integrated && value > 0.99 * f64::from(HIGHEST_DENSITY - 1.0);
-                let up_to = if bounded { "at least" } else { "up to" };
-                format!("the density is {up_to} {:.0} % above the rest density", 100.0 * value)
+                format!("the density is up to {:.0} % above the rest density", 100.0 * value)
             }
             Watched::DensePart => {
                 format!("one particle in a hundred is more than {:.0} % too dense", 100.0 * value)

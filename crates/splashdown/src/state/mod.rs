@@ -29,7 +29,6 @@ pub use counters::{
 pub(crate) use end_step::finish_step;
 pub use fields::{Extras, Fields};
 pub(crate) use list_layers::list_layers;
-pub(crate) use params::HIGHEST_DENSITY;
 pub use params::{Params, WGSL as PARAMS};
 pub use solve::{SolveState, WGSL as SOLVE};
 pub use step::{STEPS, StepState, WGSL as STATE};

@@ -116,9 +116,9 @@ gpu_struct! {
 /// that was thrown into a corner gained energy.
 const COMPRESSED_FACTOR: f32 = 0.9;
 
-/// The largest integrated density over the rest density. An impact on one wall at half the speed of sound stays below it
+/// The largest integrated density at a body over the rest density. An impact on one wall at half the speed of sound stays below it
 /// with the exponent 7.
-pub(crate) const HIGHEST_DENSITY: f32 = 1.35;
+const HIGHEST_DENSITY: f32 = 1.35;
 
 impl Params {
     /// [`stretched_from`](Self::stretched_from) of explicit schemes, in spacings. Nearer particles are in inner edges and corners,
@@ -192,8 +192,8 @@ impl Params {
         (if self.clamp_pressure == 1 { p.max(0.0) } else { p }) + self.background_pressure
     }
 
-    /// An integrated density in kg/m^3, at most [`HIGHEST_DENSITY`] times that at rest. Between two surfaces that approach
-    /// each other to less than a spacing, the density of a particle grows without bound. NaN and infinity are kept, so that
+    /// The integrated density in kg/m^3 of a particle at a body, at most [`HIGHEST_DENSITY`] times that at rest. Between two
+    /// surfaces that approach each other to less than a spacing, it grows without bound. NaN and infinity are kept, so that
     /// the integration finds and reports them.
     #[inline(always)]
     pub fn bounded_density(&self, density: f32) -> f32 {

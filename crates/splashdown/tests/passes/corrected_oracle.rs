@@ -96,7 +96,7 @@ pub fn continuity(world: &World, kernel: Kernel, boundary: Option<&[glam::Vec4]>
         let next = rho(i) + c.dt * rate;
         // Fragments keep no deficit of density.
         let kept = (4.0 * determinant).clamp(0.0, 1.0);
-        let density = if next < c.rest { c.rest + kept * (next - c.rest) } else { next.min(1.35 * c.rest) };
+        let density = if next < c.rest { c.rest + kept * (next - c.rest) } else { next };
         let deficit = (c.rest - next).max(0.0);
         // Zero at a determinant of 0.45, one at 0.9.
         let complete = ((determinant - 0.45) / 0.45).clamp(0.0, 1.0);

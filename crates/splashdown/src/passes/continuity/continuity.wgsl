@@ -89,7 +89,7 @@ fn continuity(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgr
     }
     divergence += away * volume_recovery(whole, strain, corrected.determinant);
     let rate = rho * divergence - params.density_diffusion * support * params.sound_speed * diffusion;
-    let next = bounded_density(without_tension(rho + state.dt * rate, corrected.determinant));
+    let next = without_tension(rho + state.dt * rate, corrected.determinant);
     densities[i] = vec2(next, pressure_at(next));
     let diagonal = open * corrected.matrix.diagonal + (1.0 - open) / params.lattice_moment;
     corrections[2u * i] = vec4(diagonal, away * shifting(strain, rest, corrected.determinant));

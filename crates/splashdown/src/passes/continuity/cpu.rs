@@ -135,7 +135,7 @@ impl<K: Kernel, const BODIES: bool> PairSum<8, 13> for Continuity<'_, K, BODIES>
         let rho = self.velocities[i].w;
         let rate = divergence + away * volume_recovery(self.params, whole, strain, determinant);
         let next = rho + self.dt * (rho * rate - self.diffusion * diffusion);
-        let next = self.params.bounded_density(without_tension(self.params, next, determinant));
+        let next = without_tension(self.params, next, determinant);
         let shifting = away * shifting(self.params, strain, self.rest_strain, determinant);
         let density = Vec2::new(next, self.params.pressure_at(next));
         let diagonal = open * b.diagonal + (1.0 - open) / self.params.lattice_moment;
