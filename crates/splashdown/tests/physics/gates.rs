@@ -58,6 +58,8 @@ struct Entry {
     variants: Vec<String>,
     #[serde(default)]
     across: Vec<u32>,
+    #[serde(default)]
+    except: Vec<u32>,
     at_most: Option<f64>,
     within: Option<[f64; 2]>,
     above: Option<f64>,
@@ -76,8 +78,8 @@ impl TryFrom<Entry> for Gate {
             (None, None, Some(limit)) => Limit::Above(limit),
             _ => return Err("a gate has one of `at_most`, `within = [low, high]` and `above`"),
         };
-        let Entry { variants, across, first, reason, missed, .. } = entry;
-        Ok(Self { variants, across, limit, first, reason, missed })
+        let Entry { variants, across, except, first, reason, missed, .. } = entry;
+        Ok(Self { variants, across, except, limit, first, reason, missed })
     }
 }
 
@@ -87,6 +89,8 @@ pub struct Gate {
     /// The variants and resolutions it applies to; all if there are none.
     variants: Vec<String>,
     across: Vec<u32>,
+    /// Resolutions it does not apply to.
+    except: Vec<u32>,
     pub limit: Limit,
     /// The limit before the first run, if it was changed since.
     first: Option<Limit>,
@@ -100,6 +104,7 @@ impl Gate {
     pub fn applies(&self, variant: &str, across: u32) -> bool {
         (self.variants.is_empty() || self.variants.iter().any(|name| name == variant))
             && (self.across.is_empty() || self.across.contains(&across))
+            && !self.except.contains(&across)
     }
 }
 
@@ -146,7 +151,7 @@ fn every_gate_belongs_to_a_case() {
             for variant in &gate.variants {
                 assert!(known.variants.iter().any(|v| v.name == variant), "{case}: no variant {variant:?}");
             }
-            for across in &gate.across {
+            for across in gate.across.iter().chain(&gate.except) {
                 assert!(known.sizes.contains(across), "{case}: no resolution {across}");
             }
         }

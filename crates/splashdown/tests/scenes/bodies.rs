@@ -209,6 +209,12 @@ fn negative_pressures_with_a_summed_density_give_a_warning() {
         assert!(!warnings(&format!("method = \"{method}\"")).contains("pull"));
     }
     assert!(!warnings(&format!("method = \"wcsph\"\ndensity = \"continuity\"\n{keep}")).contains("pull"));
+    // Fluid that fills the closed domain has no free surface.
+    let full = "[scene]\nname = \"full\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\nparticle_spacing = 0.05\n\
+        [[fluid.block]]\nposition = [0, 0, 0]\nsize = [1, 1, 1]\n[solver]\nmethod = \"wcsph\"\nnegative_pressure = \"keep\"\n";
+    let warned =
+        |text: &str| parse(text).expect("valid").warnings.iter().any(|w| w.to_string().contains("pull"));
+    assert!(!warned(full) && warned(&full.replace("size = [1, 1, 1]", "size = [1, 0.5, 1]")));
 }
 
 /// With the implicit pressure the surface is complete under `csf`, and the force is larger for it.
