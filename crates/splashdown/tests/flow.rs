@@ -85,6 +85,44 @@ fn a_free_jet_has_a_constant_flux_and_density() {
     }
 }
 
+/// The cross-section of a jet around the y axis over that which its speed there gives for the flow of its nozzle, between
+/// two heights in m: twice the median square of the distance from the axis, for a disc of even density.
+fn relative_section(particles: &Particles, radius: f32, speed: f32, heights: &std::ops::Range<f32>) -> f32 {
+    let inside: Vec<_> = born(particles).filter(|(x, _)| heights.contains(&x.y)).collect();
+    assert!(inside.len() > 50, "{} particles", inside.len());
+    let mut squares: Vec<f32> = inside.iter().map(|(x, _)| x.x * x.x + x.z * x.z).collect();
+    squares.sort_unstable_by(f32::total_cmp);
+    let there = inside.iter().map(|(_, v)| v.y.abs()).sum::<f32>() / inside.len() as f32;
+    2.0 * squares[squares.len() / 2] / (radius * radius * speed / there)
+}
+
+#[test]
+fn a_falling_jet_contracts_and_a_rising_one_widens() {
+    // Down, a jet is 2.4 times as fast 0.25 m below the outlet: if it keeps its width, its section is 2.4 times too large. Up,
+    // its speed falls to 0.6 times the initial one.
+    let cases = [("down", -1.0, 1.0, 0.22..0.28, 0.85..1.3), ("up", 1.0, 2.5, 0.22..0.28, 0.85..1.3)];
+    let forms = ["\"dfsph\"", "\"wcsph\"", "\"wcsph\"\ndensity = \"continuity\""];
+    for (name, direction, speed, heights, allowed) in cases {
+        for method in forms {
+            let height = if direction < 0.0 { 0.5 } else { 0.05 };
+            let text = format!(
+                "[scene]\nname = \"jet\"\nduration = 0.3\n[domain]\nmin = [-0.3, 0, -0.3]\nmax = [0.3, 0.6, 0.3]\n\
+                 open = [\"y_min\"]\n[fluid]\nparticle_spacing = 0.01\n[[emitter]]\nname = \"a\"\nradius = 0.05\n\
+                 position = [0, {height}, 0]\ndirection = [0, {direction}, 0]\nspeed = {speed}\n[solver]\n\
+                 method = {method}\n[surface]\nenabled = false\n"
+            );
+            let scene = Scene::parse(&text, "jet.toml").unwrap();
+            let mut simulation =
+                Simulation::with_executor(&scene, Executor::from(CpuExecutor::new())).unwrap();
+            let seconds = if direction < 0.0 { 0.3 } else { 0.13 };
+            simulation.advance(seconds).unwrap();
+            let particles = simulation.particles().unwrap();
+            let section = relative_section(&particles, 0.05, speed, &heights);
+            assert!(allowed.contains(&section), "{name}, {method}: {section}");
+        }
+    }
+}
+
 #[test]
 fn a_submerged_inlet_is_stable() {
     let mut scene = {

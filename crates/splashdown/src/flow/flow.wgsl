@@ -16,6 +16,10 @@ struct Nozzle {
     disc: u32,
     interval: f32,
     wobble: f32,
+    contraction_across: f32,
+    contraction_up: f32,
+    reach: f32,
+    submerged_at: f32,
 }
 
 struct SinkShape {
@@ -35,4 +39,6 @@ const SCHEDULE_SLOT: u32 = 4u;
 const SCHEDULE_ID: u32 = 5u;
 const SCHEDULE_DISTANCE: u32 = 6u;
 const SCHEDULE_BLOCKED: u32 = 7u;
-const SCHEDULE_WORDS: u32 = 8u;
+const SCHEDULE_COUNTED: u32 = 8u;
+const SCHEDULE_BESIDE: u32 = 9u;
+const SCHEDULE_WORDS: u32 = 10u;

@@ -5,7 +5,8 @@
 //! nozzle of an emitter is a short pipe that ends at its outlet. At its back face layers of particles are created on a
 //! lattice (`emission_schedule`, `emit`) and travel to the outlet like a piston (`inflow_constraint`), so that the fluid
 //! leaves at rest density and at the given speed. The columns of a falling jet are staggered; otherwise gravity, which
-//! stretches the jet, would separate it into discs. A sink marks the particles inside it as removed (`sink`); their
+//! stretches the jet, would separate it into discs. It leaves with a velocity towards its axis, with which it keeps its
+//! density while it gets faster and thinner. A sink marks the particles inside it as removed (`sink`); their
 //! places in the arrays are reused.
 
 mod conflicts;

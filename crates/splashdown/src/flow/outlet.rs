@@ -16,6 +16,12 @@ const UNLIMITED: u32 = u32::MAX / 2;
 /// another they would pile up to a rigid column between floor and outlet.
 const WOBBLE: f32 = 0.05;
 
+/// The largest velocity of the rim of a jet across its direction, over its speed.
+const MOST_CONTRACTION: f32 = 0.5;
+
+/// Distance from the pipe in spacings within which particles are beside it.
+const REACH: f32 = 1.5;
+
 /// The largest relative error of the flow of an outlet given by a mesh.
 const MOST_MESH_ERROR: f32 = 0.1;
 
@@ -72,7 +78,61 @@ fn mesh_layer(emitter: &Emitter, source: &MeshSource, solid: &Solid, spacing: f3
 pub fn nozzle(emitter: &Emitter, scene: &Scene) -> Result<(Nozzle, Layer), BodyError> {
     let spacing = scene.fluid.particle_spacing;
     let support_radius = scene.solver.support_radius(spacing);
-    nozzle_in(emitter, &scene.domain, spacing, support_radius)
+    let (nozzle, layer) = nozzle_in(emitter, &scene.domain, spacing, support_radius)?;
+    let [contraction_across, contraction_up] = contraction(&nozzle, scene.gravity, &scene.domain, spacing);
+    Ok((Nozzle { contraction_across, contraction_up, ..nozzle }, layer))
+}
+
+/// The rates in 1/s at which a jet contracts along `across` and `up` of its nozzle where it leaves it into air.
+///
+/// Gravity stretches it at the rate R = g.d / v, and the sum of both rates equals R. The pressure of an elliptic jet with
+/// half the axes A and B, which vanishes at its surface, is proportional to 1 - a^2 / A^2 - b^2 / B^2; its gradient causes
+/// rates in the ratio B^2 : A^2. A rectangle is treated like the ellipse of its width and height. Fluid at a closed side
+/// of the domain stays there: an outlet that touches one is as wide as any in this direction. The velocity at the rim is
+/// at most [`MOST_CONTRACTION`] times the speed: slower jets are not slender, and R holds at their outlet only.
+pub fn contraction(nozzle: &Nozzle, gravity: Vec3, domain: &Domain, spacing: f32) -> [f32; 2] {
+    if nozzle.points == 1 {
+        return [0.0; 2];
+    }
+    let stretching = gravity.dot(nozzle.direction) / nozzle.speed;
+    let halves = [nozzle.half_across, nozzle.half_up];
+    let centre = nozzle.back + nozzle.length * nozzle.direction;
+    let square = |half: f32, axis: Vec3| {
+        let is_at_wall =
+            [-half, half].iter().any(|&end| is_at_wall(centre + end * axis, axis, domain, spacing));
+        if is_at_wall { f32::INFINITY } else { half * half }
+    };
+    let squares = [square(halves[0], nozzle.across), square(halves[1], nozzle.up)];
+    let shares = match squares.map(f32::is_infinite) {
+        [true, true] => [0.0, 0.0],
+        [true, false] => [0.0, 1.0],
+        [false, true] => [1.0, 0.0],
+        [false, false] => [squares[1], squares[0]].map(|square| square / (squares[0] + squares[1])),
+    };
+    [0, 1].map(|axis| {
+        let most = MOST_CONTRACTION * nozzle.speed / halves[axis];
+        (shares[axis] * stretching).clamp(-most, most)
+    })
+}
+
+/// Whether a point is less than a spacing from a closed side of the domain to which `axis` is nearly perpendicular, or
+/// behind it.
+fn is_at_wall(x: Vec3, axis: Vec3, domain: &Domain, spacing: f32) -> bool {
+    (0..3).filter(|&k| axis[k].abs() > 0.9).any(|k| {
+        let [low, high] = domain.closed[k];
+        low && x[k] < domain.min[k] + spacing || high && x[k] > domain.max[k] - spacing
+    })
+}
+
+/// The volume in m^3 [beside the pipe](Nozzle::is_beside).
+fn volume_beside(nozzle: &Nozzle) -> f32 {
+    let (across, up, reach) = (nozzle.half_across, nozzle.half_up, nozzle.reach);
+    let area = if nozzle.disc == 1 {
+        std::f32::consts::PI * ((across + reach).powi(2) - across * across)
+    } else {
+        4.0 * ((across + reach) * (up + reach) - across * up)
+    };
+    area * nozzle.length
 }
 
 /// As [`nozzle`], for a scene that is not complete yet.
@@ -130,7 +190,13 @@ pub(crate) fn nozzle_in(
         disc,
         interval: layer.interval,
         wobble: if points == 1 { WOBBLE * spacing } else { 0.0 },
+        contraction_across: 0.0,
+        contraction_up: 0.0,
+        reach: REACH * spacing,
+        submerged_at: 1.0,
     };
+    let submerged_at = 0.5 * volume_beside(&nozzle) / spacing.powi(3);
+    let nozzle = Nozzle { submerged_at, ..nozzle };
     Ok((nozzle, layer))
 }
 
@@ -197,6 +263,70 @@ mod tests {
         let layer = disc_layer(0.001, 0.01);
         assert_eq!(layer.points, [Vec2::ZERO]);
         assert!(layer.interval < 0.0143 && layer.share_of(3.14e-6, 0.01) > 20.0);
+    }
+
+    fn tap(outlet: Outlet, position: Vec3, direction: Vec3, speed: f32) -> Emitter {
+        Emitter {
+            name: "tap".into(),
+            outlet,
+            position,
+            direction,
+            speed,
+            start: 0.0,
+            end: None,
+            max_particles: None,
+        }
+    }
+
+    #[test]
+    fn rates_of_contraction_add_up_to_the_stretching_by_gravity() {
+        let domain = Domain { min: Vec3::ZERO, max: Vec3::ONE, closed: [[true; 2]; 3], oscillation: None };
+        let gravity = Vec3::new(0.0, -10.0, 0.0);
+        let rates = |outlet: Outlet, position: Vec3, direction: Vec3, speed: f32| {
+            let emitter = tap(outlet, position, direction, speed);
+            let (nozzle, _) = nozzle_in(&emitter, &domain, 0.01, 0.02).unwrap();
+            contraction(&nozzle, gravity, &domain, 0.01)
+        };
+        let (disc, middle) = (|| Outlet::Disc { radius: 0.05 }, Vec3::splat(0.5));
+        let near = |a: [f32; 2], b: [f32; 2]| {
+            (Vec2::from(a) - Vec2::from(b)).length() < 1e-3 * Vec2::from(b).length()
+        };
+        assert!(near(rates(disc(), middle, Vec3::NEG_Y, 2.0), [2.5, 2.5]));
+        assert!(near(rates(disc(), middle, Vec3::Y, 2.0), [-2.5, -2.5]));
+        assert_eq!(rates(disc(), middle, Vec3::X, 2.0).map(f32::abs), [0.0, 0.0]);
+        // Slow: the rim is half as fast as the jet.
+        assert!(near(rates(disc(), middle, Vec3::NEG_Y, 0.1), [1.0, 1.0]));
+        // A curtain contracts in its thickness. One between two walls does so only.
+        let curtain = |width: f32| Outlet::Rectangle { size: [width, 0.1] };
+        let free = rates(curtain(0.5), middle, Vec3::NEG_Y, 2.0);
+        assert!(free[0] < free[1] / 20.0 && (free[0] + free[1] - 5.0).abs() < 1e-3, "{free:?}");
+        assert!(near(rates(curtain(1.0), middle, Vec3::NEG_Y, 2.0), [0.0, 5.0]));
+        // The ceiling is no wall of a jet that falls from it, and a column of single particles has no width.
+        assert!(near(rates(disc(), Vec3::new(0.5, 0.99, 0.5), Vec3::NEG_Y, 2.0), [2.5, 2.5]));
+        assert_eq!(rates(Outlet::Disc { radius: 0.002 }, middle, Vec3::NEG_Y, 2.0), [0.0; 2]);
+    }
+
+    #[test]
+    fn a_pipe_in_water_is_submerged_and_one_at_the_surface_is_half_so() {
+        let domain = Domain { min: Vec3::ZERO, max: Vec3::ONE, closed: [[true; 2]; 3], oscillation: None };
+        for outlet in [Outlet::Disc { radius: 0.05 }, Outlet::Rectangle { size: [0.1, 0.06] }] {
+            let emitter = tap(outlet, Vec3::splat(0.5), Vec3::X, 1.0);
+            let (mut nozzle, _) = nozzle_in(&emitter, &domain, 0.01, 0.02).unwrap();
+            (nozzle.contraction_across, nozzle.contraction_up) = (2.0, 2.0);
+            let points = (0..1_000_000)
+                .map(|k| Vec3::new((k % 100) as f32, (k / 100 % 100) as f32, (k / 10_000) as f32));
+            let beside: Vec<Vec3> =
+                points.map(|q| 0.01 * (q + 0.5)).filter(|x| nozzle.is_beside(*x)).collect();
+            let full = beside.len() as f32 / nozzle.submerged_at;
+            assert!((1.6..2.4).contains(&full), "{full}");
+            let below = beside.iter().filter(|x| x.y < 0.5).count() as f32 / nozzle.submerged_at;
+            assert!((0.8..1.2).contains(&below), "{below}");
+            let leaving = Vec3::new(0.499, 0.52, 0.5);
+            let velocity = |beside: usize| nozzle.velocity(leaving, 0.005, beside as u32);
+            assert!((velocity(0) - Vec3::new(1.0, -0.04, 0.0)).length() < 1e-5);
+            assert_eq!(velocity(beside.len()), Vec3::X);
+            assert_eq!(nozzle.velocity(leaving, 5e-4, 0), Vec3::X);
+        }
     }
 
     #[test]

@@ -38,6 +38,14 @@ gpu_struct! {
         interval: f32,
         /// How far, at most, its particles are created beside their columns, in m.
         wobble: f32,
+        /// Rate in 1/s at which fluid that leaves into air contracts along `across`; negative if it widens.
+        contraction_across: f32,
+        /// The same along `up`.
+        contraction_up: f32,
+        /// Distance from the pipe in m within which particles are beside it.
+        reach: f32,
+        /// Number of particles beside the pipe from which its outlet is under water; fewer are that share of it.
+        submerged_at: f32,
     }
 }
 
@@ -60,18 +68,57 @@ gpu_struct! {
 }
 
 impl Nozzle {
+    /// A point in m as distances from the centre of the back face along `across`, `up` and `direction`.
+    #[inline]
+    pub fn local(&self, x: Vec3) -> Vec3 {
+        let o = x - self.back;
+        Vec3::new(o.dot(self.across), o.dot(self.up), o.dot(self.direction))
+    }
+
     /// True if a point in m lies in the pipe, or up to a quarter of a spacing behind its back face: rounding must not
     /// exclude a layer that was created there.
     #[inline]
     pub fn holds(&self, x: Vec3, particle_spacing: f32) -> bool {
-        let o = x - self.back;
-        let (along, a, b) = (o.dot(self.direction), o.dot(self.across), o.dot(self.up));
-        let inside = if self.disc == 1 {
-            a * a + b * b <= self.half_across * self.half_across
+        let q = self.local(x);
+        self.is_within(q, 0.0) && q.z >= -0.25 * particle_spacing && q.z <= self.length
+    }
+
+    /// True if a point in m is outside the pipe and within `reach` of its sides.
+    #[inline]
+    pub fn is_beside(&self, x: Vec3) -> bool {
+        let q = self.local(x);
+        q.z >= 0.0 && q.z <= self.length && self.is_within(q, self.reach) && !self.is_within(q, 0.0)
+    }
+
+    /// Whether a place is within the cross-section, enlarged by `margin` (m) on all sides.
+    #[inline]
+    fn is_within(&self, q: Vec3, margin: f32) -> bool {
+        let (across, up) = (self.half_across + margin, self.half_up + margin);
+        if self.disc == 1 {
+            q.x * q.x + q.y * q.y <= across * across
         } else {
-            a.abs() <= self.half_across && b.abs() <= self.half_up
-        };
-        inside && along >= -0.25 * particle_spacing && along <= self.length
+            q.x.abs() <= across && q.y.abs() <= up
+        }
+    }
+
+    /// The velocity in m/s that a particle in the pipe has after a step of `dt` (s): that of the piston. If it leaves in
+    /// this step, it also contracts, with `beside` particles beside the pipe.
+    #[inline]
+    pub fn velocity(&self, x: Vec3, dt: f32, beside: u32) -> Vec3 {
+        let q = self.local(x);
+        let piston = self.speed * self.direction;
+        if q.z + self.speed * dt <= self.length {
+            return piston;
+        }
+        let in_air = 1.0 - (beside as f32 / self.submerged_at).min(1.0);
+        let inwards = self.contraction_across * q.x * self.across + self.contraction_up * q.y * self.up;
+        piston - in_air * inwards
+    }
+
+    /// Whether its fluid contracts or widens in air.
+    #[inline]
+    pub fn contracts(&self) -> bool {
+        self.contraction_across != 0.0 || self.contraction_up != 0.0
     }
 }
 
@@ -136,6 +183,10 @@ impl EmissionSchedule {
     pub const DISTANCE: usize = 6;
     /// Particles not created because another particle was too near.
     pub const BLOCKED: usize = 7;
+    /// Particles [beside the pipe](Nozzle::is_beside), counted during a step.
+    pub const COUNTED: usize = 8;
+    /// Their number in the step before.
+    pub const BESIDE: usize = 9;
     /// Words per emitter.
-    pub const WORDS: usize = 8;
+    pub const WORDS: usize = 10;
 }

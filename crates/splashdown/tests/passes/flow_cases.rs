@@ -33,6 +33,10 @@ fn nozzles() -> Vec<Nozzle> {
         disc: 1,
         interval: 0.97 * SPACING,
         wobble: 0.0,
+        contraction_across: 7.0,
+        contraction_up: 3.0,
+        reach: 0.04,
+        submerged_at: 9.0,
     };
     let rectangle = Nozzle {
         back: Vec3::new(0.13, 0.31, 0.47),
@@ -43,6 +47,7 @@ fn nozzles() -> Vec<Nozzle> {
         disc: 0,
         speed: 0.9,
         wobble: 0.11 * SPACING,
+        contraction_across: -5.0,
         ..disc
     };
     let late = Nozzle { start: 5.0, first_point: 20, points: 3, ..disc };
@@ -72,11 +77,15 @@ fn plan() -> Case {
         plan[EmissionSchedule::PHASE] = phases[k].to_bits();
         plan[EmissionSchedule::EMITTED] = emitted[k];
         plan[EmissionSchedule::LAYER] = 77;
+        plan[EmissionSchedule::COUNTED] = 5 + k as u32;
+        plan[EmissionSchedule::BESIDE] = 88;
     }
     plans[6 * EmissionSchedule::WORDS] = 4000;
     let mut expected = plans.clone();
     for plan in expected.chunks_exact_mut(EmissionSchedule::WORDS) {
         plan[EmissionSchedule::LAYER] = 0;
+        plan[EmissionSchedule::BESIDE] = plan[EmissionSchedule::COUNTED];
+        plan[EmissionSchedule::COUNTED] = 0;
     }
     let mut set = |k: usize, word: usize, value: u32| expected[k * EmissionSchedule::WORDS + word] = value;
     let rest = |k: usize| {
@@ -225,38 +234,69 @@ fn emit() -> Case {
 }
 
 fn drive() -> Case {
-    let world = World::new(params(2.0), 1500);
+    let mut world = World::new(params(2.0), 1500);
+    // Long enough that some particles leave.
+    world.state.dt = 0.03;
     let nozzles = nozzles();
     let mut plans = vec![0; 5 * EmissionSchedule::WORDS + 1];
     // The last is inactive only because of its limit.
     let mut all = nozzles.clone();
     all.push(Nozzle { back: Vec3::new(0.0, 0.1, 0.2), most: 10, points: 5, first_point: 25, ..nozzles[0] });
     plans[4 * EmissionSchedule::WORDS + EmissionSchedule::EMITTED] = 6;
+    // The outlet of the disc is a third under water.
+    plans[EmissionSchedule::BESIDE] = 3;
+    plans[EmissionSchedule::COUNTED] = 2;
     let accelerations: Vec<Vec4> = (0..world.len()).map(|i| world.normals[i] * 3.0).collect();
-    let mut expected = accelerations.clone();
-    let mut driven = 0;
+    let (mut expected, mut expected_plans) = (accelerations.clone(), plans.clone());
+    let (mut driven, mut leaving) = (0, [0; 2]);
     for (i, a) in expected.iter_mut().enumerate().take(world.active()) {
-        let holds = |nozzle: &Nozzle| {
+        let local = |nozzle: &Nozzle| {
             let o: DVec3 = (world.positions[i].xyz() - nozzle.back).as_dvec3();
-            let [along, a, b] =
-                [nozzle.direction, nozzle.across, nozzle.up].map(|axis| o.dot(axis.as_dvec3()));
-            let (h, up) = (f64::from(nozzle.half_across), f64::from(nozzle.half_up));
-            let inside = if nozzle.disc == 1 { a.hypot(b) <= h } else { a.abs() <= h && b.abs() <= up };
-            inside && along >= -0.25 * f64::from(SPACING) && along <= f64::from(nozzle.length)
+            [nozzle.across, nozzle.up, nozzle.direction].map(|axis| o.dot(axis.as_dvec3()))
         };
-        if let Some(nozzle) = nozzles[..2].iter().find(|nozzle| holds(nozzle)) {
-            let change = nozzle.speed * nozzle.direction - world.velocities[i].xyz();
+        let within = |nozzle: &Nozzle, margin: f64| {
+            let [a, b, _] = local(nozzle);
+            let (h, up) = (f64::from(nozzle.half_across) + margin, f64::from(nozzle.half_up) + margin);
+            if nozzle.disc == 1 { a.hypot(b) <= h } else { a.abs() <= h && b.abs() <= up }
+        };
+        let holds = |nozzle: &Nozzle| {
+            let along = local(nozzle)[2];
+            within(nozzle, 0.0) && along >= -0.25 * f64::from(SPACING) && along <= f64::from(nozzle.length)
+        };
+        if let Some(k) = (0..2).find(|&k| holds(&nozzles[k])) {
+            let nozzle = &nozzles[k];
+            let [across, up, along] = local(nozzle);
+            let mut velocity = f64::from(nozzle.speed) * nozzle.direction.as_dvec3();
+            if along + f64::from(nozzle.speed * world.state.dt) > f64::from(nozzle.length) {
+                let in_air = if k == 0 { 2.0 / 3.0 } else { 1.0 };
+                velocity -= in_air * f64::from(nozzle.contraction_across) * across * nozzle.across.as_dvec3();
+                velocity -= in_air * f64::from(nozzle.contraction_up) * up * nozzle.up.as_dvec3();
+                leaving[k] += 1;
+            }
+            let change = velocity.as_vec3() - world.velocities[i].xyz();
             // The fourth component keeps the particle from being shifted.
             *a = (change / world.state.dt).extend(1.0);
             driven += 1;
         }
+        for (k, nozzle) in nozzles[..2].iter().enumerate() {
+            let along = local(nozzle)[2];
+            let is_along = along >= 0.0 && along <= f64::from(nozzle.length);
+            if is_along && within(nozzle, nozzle.reach.into()) && !within(nozzle, 0.0) {
+                expected_plans[k * EmissionSchedule::WORDS + EmissionSchedule::COUNTED] += 1;
+            }
+        }
     }
     assert!(driven > 20 && driven < world.active() / 2, "{driven}");
-    let same = |a: &[f32], b: &[f32]| {
-        let b = wide(b);
+    assert!(leaving.iter().all(|&count| count > 1 && count < driven / 2), "{leaving:?} of {driven}");
+    let counted = |k: usize| expected_plans[k * EmissionSchedule::WORDS + EmissionSchedule::COUNTED];
+    assert!(counted(0) > 10 && counted(1) > 10, "{expected_plans:?}");
+    let same = |a: &[Data], b: &[Data]| {
+        exact("schedules", a[0].words(), b[0].words())?;
+        let b = wide(b[1].floats());
         let tolerance: Vec<f64> = b.iter().map(|b| 2e-6 * b.abs() + 1e-3).collect();
-        close("accelerations", a, &b, &tolerance)
+        close("accelerations", a[1].floats(), &b, &tolerance)
     };
+    let expected = [Data::U32(expected_plans), Data::Vec4(expected)];
     Case {
         pass: pass("flow.inflow_constraint"),
         name: "a disc and a rectangle on, others off".into(),
@@ -272,8 +312,8 @@ fn drive() -> Case {
             Data::Vec4(world.velocities.clone()),
             Data::Vec4(accelerations),
         ],
-        compare: Box::new(move |a, b| same(a[0].floats(), b[0].floats())),
-        oracle: Box::new(move |out| same(out[0].floats(), Data::Vec4(expected.clone()).floats())),
+        compare: Box::new(same),
+        oracle: Box::new(move |out| same(out, &expected)),
         control: |input| {
             let Data::Nozzles(nozzles) = &mut input[4] else { panic!("no nozzles") };
             nozzles[1].speed *= 1.0001;

@@ -7,7 +7,13 @@ pub(super) fn emission_schedule(buffers: EmissionScheduleBindings<'_>) {
     let mut slot = cell_start[grid.cell_count as usize];
     for (nozzle, schedule) in nozzles.iter().zip(schedules.chunks_exact_mut(EmissionSchedule::WORDS)) {
         schedule[EmissionSchedule::LAYER] = 0;
-        if state.run_count == 0 || state.time < nozzle.start || state.time >= nozzle.end {
+        // A step after the end of the frame counts nothing.
+        if state.run_count == 0 {
+            continue;
+        }
+        schedule[EmissionSchedule::BESIDE] = schedule[EmissionSchedule::COUNTED];
+        schedule[EmissionSchedule::COUNTED] = 0;
+        if state.time < nozzle.start || state.time >= nozzle.end {
             continue;
         }
         if schedule[EmissionSchedule::EMITTED] + nozzle.points > nozzle.most {

@@ -13,7 +13,13 @@ fn emission_schedule() {
         let nozzle = nozzles[k];
         let w = k * SCHEDULE_WORDS;
         schedules[w + SCHEDULE_LAYER] = 0u;
-        if (state.run_count == 0u || state.time < nozzle.start || state.time >= nozzle.end) {
+        // A step after the end of the frame counts nothing.
+        if (state.run_count == 0u) {
+            continue;
+        }
+        schedules[w + SCHEDULE_BESIDE] = schedules[w + SCHEDULE_COUNTED];
+        schedules[w + SCHEDULE_COUNTED] = 0u;
+        if (state.time < nozzle.start || state.time >= nozzle.end) {
             continue;
         }
         if (schedules[w + SCHEDULE_EMITTED] + nozzle.points > nozzle.most) {

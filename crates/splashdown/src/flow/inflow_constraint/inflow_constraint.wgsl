@@ -5,16 +5,30 @@
 
 #bindings
 
-fn holds(nozzle: Nozzle, x: vec3<f32>) -> bool {
+// A point as distances from the centre of the back face along `across`, `up` and `direction`.
+fn local_of(nozzle: Nozzle, x: vec3<f32>) -> vec3<f32> {
     let o = x - nozzle.back;
-    let along = dot(o, nozzle.direction);
-    let a = dot(o, nozzle.across);
-    let b = dot(o, nozzle.up);
-    var inside = abs(a) <= nozzle.half_across && abs(b) <= nozzle.half_up;
+    return vec3(dot(o, nozzle.across), dot(o, nozzle.up), dot(o, nozzle.direction));
+}
+
+// Whether a place is within the cross-section, enlarged by `margin` on all sides.
+fn is_within(nozzle: Nozzle, q: vec3<f32>, margin: f32) -> bool {
+    let across = nozzle.half_across + margin;
     if (nozzle.disc == 1u) {
-        inside = a * a + b * b <= nozzle.half_across * nozzle.half_across;
+        return q.x * q.x + q.y * q.y <= across * across;
     }
-    return inside && along >= -0.25 * params.particle_spacing && along <= nozzle.length;
+    return abs(q.x) <= across && abs(q.y) <= nozzle.half_up + margin;
+}
+
+// As Nozzle::velocity.
+fn velocity_of(nozzle: Nozzle, q: vec3<f32>, beside: u32) -> vec3<f32> {
+    let piston = nozzle.speed * nozzle.direction;
+    if (q.z + nozzle.speed * state.dt <= nozzle.length) {
+        return piston;
+    }
+    let in_air = 1.0 - min(f32(beside) / nozzle.submerged_at, 1.0);
+    let inwards = nozzle.contraction_across * q.x * nozzle.across + nozzle.contraction_up * q.y * nozzle.up;
+    return piston - in_air * inwards;
 }
 
 @compute @workgroup_size(64)
@@ -24,14 +38,25 @@ fn inflow_constraint(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num
         return;
     }
     let x = sorted_positions[i].xyz;
+    var is_held = false;
     for (var k = 0u; k < arrayLength(&nozzles); k++) {
         let nozzle = nozzles[k];
+        let w = k * SCHEDULE_WORDS;
         let is_on = state.time >= nozzle.start && state.time < nozzle.end
-            && schedules[k * SCHEDULE_WORDS + SCHEDULE_EMITTED] + nozzle.points <= nozzle.most;
-        if (is_on && holds(nozzle, x)) {
-            let change = nozzle.speed * nozzle.direction - sorted_velocities[i].xyz;
-            accelerations[i] = vec4(change / state.dt, 1.0);
-            return;
+            && atomicLoad(&schedules[w + SCHEDULE_EMITTED]) + nozzle.points <= nozzle.most;
+        let q = local_of(nozzle, x);
+        if (!is_on || q.z < -0.25 * params.particle_spacing || q.z > nozzle.length) {
+            continue;
+        }
+        if (is_within(nozzle, q, 0.0)) {
+            // The first nozzle that holds a particle moves it.
+            if (!is_held) {
+                let target_velocity = velocity_of(nozzle, q, atomicLoad(&schedules[w + SCHEDULE_BESIDE]));
+                accelerations[i] = vec4((target_velocity - sorted_velocities[i].xyz) / state.dt, 1.0);
+                is_held = true;
+            }
+        } else if (q.z >= 0.0 && is_within(nozzle, q, nozzle.reach)) {
+            atomicAdd(&schedules[w + SCHEDULE_COUNTED], 1u);
         }
     }
 }
