@@ -127,7 +127,8 @@ impl<'a> Frame<'a> {
     /// Whether a liquid refracts the scene behind it.
     pub(crate) fn has_liquid(&self) -> bool {
         let has_mesh = self.surface.is_some_and(|drawn| drawn.style != SurfaceStyle::Lines);
-        has_mesh || self.liquid_particles.is_some()
+        let has_droplets = self.droplets.is_some_and(|drawn| drawn.buffers.count > 0);
+        has_mesh || self.liquid_particles.is_some() || has_droplets
     }
 
     /// The number of samples if rays are traced.

@@ -264,8 +264,10 @@ impl Renderer {
         let chunks =
             frame.particles.map(|drawn| self.particles.bind(&self.device, &drawn)).unwrap_or_default();
         let foam = frame.foam.map(|drawn| self.foam.bind(&self.device, &drawn)).unwrap_or_default();
-        let droplets =
-            frame.droplets.map(|drawn| self.droplets.bind(&self.device, &drawn)).unwrap_or_default();
+        let droplets = frame
+            .droplets
+            .map(|drawn| self.droplets.bind(&self.device, &drawn, Some(targets)))
+            .unwrap_or_default();
         let has_liquid = frame.has_liquid();
         let (has_panes, has_edges) = frame.sides(has_liquid);
         let scene = |pass: &mut RenderPass<'_>| {

@@ -195,6 +195,29 @@ fn the_samples_of_a_traced_picture_move_droplets_and_foam() {
 }
 
 #[test]
+fn a_droplet_shows_the_body_behind_it() {
+    let Some(mut harness) = common::harness() else { return };
+    let ball = sample::ball([0.0, 0.0, -3.0], 1.5, 24);
+    let body = PlacedBody::new(&ball.vertices, &ball.triangles, [0.8, 0.05, 0.05]).unwrap();
+    let bodies = UploadedBodies::new(&harness.device, [(&body, [0.0; 3], [0.0, 0.0, 0.0, 1.0])]);
+    let alone = harness.draw(SIZE, &frame().with_bodies(bodies.buffers()));
+    let picture = draw(&mut harness, [0.0; 3], 0.0, frame().with_bodies(bodies.buffers()));
+    assert!(changed(&picture, &alone).2 > 500);
+    // Off the middle, where the droplet reflects less and shows the other side of the ball.
+    let is_red = |[r, g, b]: [u8; 3]| u32::from(r) > 2 * u32::from(g.max(b));
+    for at in [[100, 80], [92, 80], [108, 80], [100, 86]] {
+        assert!(is_red(picture.pixel(at)), "{at:?}: {:?}", picture.pixel(at));
+    }
+    // Control: the environment.
+    let without = draw(&mut harness, [0.0; 3], 0.0, frame());
+    assert!(!is_red(without.pixel([92, 80])) && !is_red(without.pixel([100, 86])));
+    // Beside the ball as seen from the eye, there is no body behind the droplet.
+    let beside = draw(&mut harness, [0.9, 0.9, 0.0], 0.0, frame().with_bodies(bodies.buffers()));
+    let ([left, right], [top, bottom], _) = changed(&beside, &alone);
+    assert!(!is_red(beside.pixel([(left + right) / 2, (top + bottom) / 2])));
+}
+
+#[test]
 fn invalid_droplets_are_refused() {
     let Some(harness) = common::harness() else { return };
     let error = UploadedDroplets::new(&harness.device, &[[0.0; 3]; 2], &[[0.0; 3]]).unwrap_err();

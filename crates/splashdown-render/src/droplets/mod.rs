@@ -12,7 +12,9 @@
 //!
 //! *Shading.* A ray that enters a sphere leaves it at a known place: it is refracted twice there, and shows the
 //! environment upside down. The reflected ray, absorption in between and the highlight of the sun are those of the
-//! surface of the liquid. With traced rays both rays then hit the liquid, the bodies or the environment.
+//! surface of the liquid. With traced rays both rays then hit the liquid, the bodies or the environment. Without, the
+//! refracted ray of a droplet in front of a body meets the picture without the liquid at the distance of that body: it
+//! showed the floor in front of a white mug. All other rays see the environment.
 //!
 //! *Order.* Droplets are blended over the picture in the order of the buffer, and test the depth. Foam and spray are
 //! drawn later and cover all droplets: a droplet in front of spray would refract it, but rays do not find spray.
@@ -33,17 +35,18 @@
 use crate::chunks::{Chunk, bind_chunks};
 use crate::error::{check_radius, check_shutter};
 use crate::globals::Globals;
-use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group_layout};
+use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group_layout, linear_sampler};
 use crate::shader::{
-    ENVIRONMENT, GLOBALS, MATTE, OPTICS, REFRACTED, SPHERE, SUN_LAYERS, SUNLIT, Shader, TRACE,
+    ENVIRONMENT, GLOBALS, MATTE, OPTICS, PICTURE_BEHIND, REFRACTED, SPHERE, SUN_LAYERS, SUNLIT, Shader, TRACE,
 };
+use crate::targets::Targets;
 use crate::{DropletBuffers, Liquid, RenderError};
-use wgpu::{BindGroupLayout, Device, RenderPass, RenderPipeline, TextureFormat};
+use wgpu::{BindGroupLayout, BindingResource, Device, RenderPass, RenderPipeline, Sampler, TextureFormat};
 
 const DROPLETS: &str = include_str!("droplets.wgsl");
 pub(crate) const SHADER: Shader = Shader {
     label: "droplets",
-    parts: &[GLOBALS, ENVIRONMENT, OPTICS, SPHERE, include_str!("plain.wgsl"), DROPLETS],
+    parts: &[GLOBALS, ENVIRONMENT, OPTICS, PICTURE_BEHIND, SPHERE, include_str!("plain.wgsl"), DROPLETS],
 };
 pub(crate) const TRACED: Shader = Shader {
     label: "traced droplets",
@@ -107,27 +110,42 @@ pub(crate) struct Droplets {
     layout: BindGroupLayout,
     /// The bind group of the droplets: behind those of the scene.
     group: u32,
+    /// Reads the picture behind droplets without traced rays.
+    sampler: Option<Sampler>,
 }
 
 impl Droplets {
     /// Droplets in a picture without traced rays; `scene` are the layouts of globals and environment. With traced rays it
     /// has that of the trees as well.
     pub fn new(device: &Device, scene: &[&BindGroupLayout], format: TextureFormat, samples: u32) -> Droplets {
-        let layout = bind_group_layout(device, "droplets", &[Bind::Storage]);
+        let is_traced = scene.len() == 3;
+        let behind = [Bind::TextureLayers, Bind::Texture, Bind::Sampler];
+        let behind = if is_traced { &[][..] } else { &behind };
+        let bindings: Vec<Bind> = [Bind::Storage].into_iter().chain(behind.iter().copied()).collect();
+        let layout = bind_group_layout(device, "droplets", &bindings);
         let layouts: Vec<&BindGroupLayout> = scene.iter().copied().chain([&layout]).collect();
-        let shader = if scene.len() == 3 { TRACED } else { SHADER };
+        let shader = if is_traced { TRACED } else { SHADER };
         let desc = PipelineDesc {
             samples,
             depth: Some(Depth::Test),
             blend: Some(OVER),
             ..PipelineDesc::new(shader, &layouts, format)
         };
-        Droplets { pipeline: desc.build(device), layout, group: scene.len() as u32 }
+        let sampler = (!is_traced).then(|| linear_sampler(device));
+        Droplets { pipeline: desc.build(device), layout, group: scene.len() as u32, sampler }
     }
 
-    /// Binds the droplets.
-    pub fn bind(&self, device: &Device, drawn: &DrawnDroplets<'_>) -> Vec<Chunk> {
-        bind_chunks(device, "droplets", &self.layout, drawn.buffers.count, &[drawn.buffers.column()], &[])
+    /// Binds the droplets; without traced rays, with the targets that contain the picture behind them.
+    pub fn bind(&self, device: &Device, drawn: &DrawnDroplets<'_>, targets: Option<&Targets>) -> Vec<Chunk> {
+        let behind = |(targets, sampler)| {
+            let Targets { scenes, solid, .. }: &Targets = targets;
+            [&scenes.view, solid]
+                .map(BindingResource::TextureView)
+                .into_iter()
+                .chain([BindingResource::Sampler(sampler)])
+        };
+        let behind: Vec<_> = targets.zip(self.sampler.as_ref()).into_iter().flat_map(behind).collect();
+        bind_chunks(device, "droplets", &self.layout, drawn.buffers.count, &[drawn.buffers.column()], &behind)
     }
 
     /// Draws the droplets. Expects the groups of the scene to be bound.

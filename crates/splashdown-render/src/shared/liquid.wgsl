@@ -1,5 +1,5 @@
 // Shading of the liquid's surface without tracing rays: Fresnel blend of reflection and refraction,
-// used for the mesh and the screen-space fluid. Needs globals.wgsl, environment.wgsl, optics.wgsl.
+// used for the mesh and the screen-space fluid. Needs globals.wgsl, environment.wgsl, optics.wgsl, picture_behind.wgsl.
 
 @group(2) @binding(0) var scene_colour: texture_2d_array<f32>; // the picture without the liquid, a layer per tile
 @group(2) @binding(1) var thickness: texture_2d<f32>;      // length of the view ray inside the liquid, m
@@ -71,19 +71,6 @@ fn leaving_ray(world: vec3f, bent: vec3f, path: f32) -> Leaving {
         return Leaving(origin, direction, travelled + rest, false);
     }
     return Leaving(origin + direction * rest, direction, rest, true);
-}
-
-// The picture behind the liquid at a point of the scene.
-fn scene_at(world: vec3f) -> vec3f {
-    let clip = globals.clip_from_world * vec4f(world, 1.0);
-    let in_target = clip.xy / max(clip.w, globals.near) * vec2f(0.5, -0.5) + 0.5;
-    let in_picture = (in_target * globals.target_size + globals.tile_corner) / globals.picture_size;
-    let pixel = clamp(in_picture, vec2f(0.001), vec2f(0.999)) * globals.picture_size;
-    // Its tile, which may be another one.
-    let tile = clamp(floor(pixel / globals.tile_stride), vec2f(0.0), globals.tile_grid - 1.0);
-    let uv = (pixel - tile * globals.tile_stride + globals.tile_border) / globals.target_size;
-    let layer = i32(tile.y * globals.tile_grid.x + tile.x);
-    return light_of(textureSampleLevel(scene_colour, scene_sampler, uv, layer, 0.0).rgb);
 }
 
 // Colour of the liquid at the surface point `world`, with `path` metres of liquid behind it. The

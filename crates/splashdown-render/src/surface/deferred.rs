@@ -38,7 +38,7 @@
 use crate::SurfaceBuffers;
 use crate::pipeline::{Bind, Depth, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
 use crate::recorder::Recorder;
-use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, Shader};
+use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, PICTURE_BEHIND, Shader};
 use crate::targets::{NORMAL_FORMAT, Targets};
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, Device, Face, RenderPipeline, Sampler, TextureFormat,
@@ -60,11 +60,33 @@ pub(crate) const COVER_FOUR: Shader =
     Shader { label: "cover", parts: &[FULLSCREEN, NORMAL_CODE, FOUR_SAMPLES, STORED, COVER] };
 pub(crate) const SHADE_ONE: Shader = Shader {
     label: "shade",
-    parts: &[GLOBALS, FULLSCREEN, ENVIRONMENT, OPTICS, LIQUID, NORMAL_CODE, ONE_SAMPLE, STORED, SHADE],
+    parts: &[
+        GLOBALS,
+        FULLSCREEN,
+        ENVIRONMENT,
+        OPTICS,
+        PICTURE_BEHIND,
+        LIQUID,
+        NORMAL_CODE,
+        ONE_SAMPLE,
+        STORED,
+        SHADE,
+    ],
 };
 pub(crate) const SHADE_FOUR: Shader = Shader {
     label: "shade",
-    parts: &[GLOBALS, FULLSCREEN, ENVIRONMENT, OPTICS, LIQUID, NORMAL_CODE, FOUR_SAMPLES, STORED, SHADE],
+    parts: &[
+        GLOBALS,
+        FULLSCREEN,
+        ENVIRONMENT,
+        OPTICS,
+        PICTURE_BEHIND,
+        LIQUID,
+        NORMAL_CODE,
+        FOUR_SAMPLES,
+        STORED,
+        SHADE,
+    ],
 };
 pub(crate) const OVER_SAMPLES: Shader = Shader {
     label: "over samples",

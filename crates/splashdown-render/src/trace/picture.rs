@@ -161,7 +161,8 @@ impl TracedPicture {
         let (has_panes, has_edges) = frame.sides(true);
         let behind = frame.domain.edges_behind(frame.camera.eye.into());
         let foam = frame.foam.map(|drawn| self.foam.bind(device, &drawn)).unwrap_or_default();
-        let droplets = frame.droplets.map(|drawn| self.droplets.bind(device, &drawn)).unwrap_or_default();
+        let droplets =
+            frame.droplets.map(|drawn| self.droplets.bind(device, &drawn, None)).unwrap_or_default();
         {
             let mut pass = recorder.one_sample("scene", &targets.sample, &targets.depth, Start::Clear);
             pass.set_bind_group(0, globals, &[]);
