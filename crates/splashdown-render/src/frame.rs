@@ -124,11 +124,15 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Whether a liquid refracts the scene behind it.
+    /// Whether a surface of liquid is drawn.
     pub(crate) fn has_liquid(&self) -> bool {
         let has_mesh = self.surface.is_some_and(|drawn| drawn.style != SurfaceStyle::Lines);
-        let has_droplets = self.droplets.is_some_and(|drawn| drawn.buffers.count > 0);
-        has_mesh || self.liquid_particles.is_some() || has_droplets
+        has_mesh || self.liquid_particles.is_some()
+    }
+
+    /// Whether something refracts the picture behind it: a liquid or droplets.
+    pub(crate) fn is_refracted(&self) -> bool {
+        self.has_liquid() || self.droplets.is_some_and(|drawn| drawn.buffers.count > 0)
     }
 
     /// The number of samples if rays are traced.

@@ -309,14 +309,14 @@ impl Offscreen {
         Ok(ReadBack::start(buffer, submission))
     }
 
-    /// Draws what is behind the liquid in all tiles, because refraction reads it anywhere.
+    /// Draws what is behind liquid and droplets in all tiles, because refraction reads it anywhere.
     fn draw_scenes(
         &self,
         renderer: &mut Renderer,
         frame: &Frame<'_>,
         tiling: Tiling,
     ) -> Result<(), RenderError> {
-        if tiling.count() == 1 || !frame.has_liquid() {
+        if tiling.count() == 1 || !frame.is_refracted() {
             return Ok(());
         }
         with_error_scopes(&self.device, || {

@@ -57,10 +57,10 @@ pub(crate) enum Extent {
 ///
 /// 1. the shadow of the fluid on the floor (256 x 256, blurred);
 /// 2. the sums of a slice;
-/// 3. the scene: background, hidden edges, bodies, particles, slice; with a liquid, the result is resolved
-///    to a texture that the liquid refracts;
-/// 4. with a liquid: if there is one sample per pixel, a copy of that texture in the target; then bubbles in the
-///    texture, at depths with one sample per pixel;
+/// 3. the scene: background, hidden edges, bodies, particles, slice; with a liquid or droplets, the result is resolved
+///    to a texture that they refract;
+/// 4. with a liquid or droplets: if there is one sample per pixel, a copy of that texture in the target; then, with a liquid, bubbles
+///    in the texture, at depths with one sample per pixel;
 /// 5. with a liquid, its thickness; then for a mesh its normals, the pixels that it covers, and the
 ///    shading of these pixels; for a liquid of particles, their distances and smoothing;
 /// 6. the picture: the shading of smoothed distances, wireframe and droplets;
@@ -234,7 +234,7 @@ impl Renderer {
         }
         let behind = frame.domain.edges_behind(globals.eye.into());
         let globals = self.bind_globals(bytemuck::bytes_of(&globals));
-        let layers = if frame.has_liquid() { tile.tiling.count() } else { 1 };
+        let layers = if frame.is_refracted() { tile.tiling.count() } else { 1 };
         if self.targets.as_ref().is_none_or(|targets| !targets.suit(size, layers)) {
             self.targets = Some(Targets::new(&self.device, size, layers, self.format, self.sample_count));
         }
@@ -268,7 +268,7 @@ impl Renderer {
             .droplets
             .map(|drawn| self.droplets.bind(&self.device, &drawn, Some(targets)))
             .unwrap_or_default();
-        let has_liquid = frame.has_liquid();
+        let (has_liquid, is_refracted) = (frame.has_liquid(), frame.is_refracted());
         let (has_panes, has_edges) = frame.sides(has_liquid);
         let scene = |pass: &mut RenderPass<'_>| {
             pass.set_bind_group(0, &globals, &[]);
@@ -290,7 +290,7 @@ impl Renderer {
                 self.slice.record(pass, group);
             }
         };
-        if has_liquid {
+        if is_refracted {
             scene(&mut recorder.picture(
                 "scene",
                 targets,
@@ -306,7 +306,7 @@ impl Renderer {
                 self.bodies.record_distance(&mut pass, bodies);
             }
         }
-        if has_liquid && targets.samples.is_none() {
+        if is_refracted && targets.samples.is_none() {
             let mut pass = recorder.cleared("scene copy", target, Color::BLACK);
             self.scene_copy.record(&self.device, &mut pass, &targets.scene);
         }
@@ -318,7 +318,7 @@ impl Renderer {
             pass.set_bind_group(1, &self.shadow.environment, &[]);
             self.foam.record(&mut pass, &foam, Kinds::UnderWater);
         }
-        if has_liquid {
+        if is_refracted {
             targets.scenes.record(recorder.encoder(), tile.index);
         }
         if extent == Extent::BehindLiquid {
@@ -352,10 +352,10 @@ impl Renderer {
             }
         };
         {
-            let start = if has_liquid { Start::Load } else { Start::Clear };
+            let start = if is_refracted { Start::Load } else { Start::Clear };
             let end = if layer.is_some() { End::Store } else { End::Resolve };
             let mut pass = recorder.picture("picture", targets, target, start, end);
-            if !has_liquid {
+            if !is_refracted {
                 scene(&mut pass);
             }
             pass.set_bind_group(0, &globals, &[]);

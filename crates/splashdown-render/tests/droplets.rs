@@ -218,6 +218,27 @@ fn a_droplet_shows_the_body_behind_it() {
 }
 
 #[test]
+fn a_droplet_does_not_change_what_else_is_drawn() {
+    let Some(mut harness) = common::harness() else { return };
+    // Bubbles and the edges of the tank without a liquid, far from the droplet.
+    let places: Vec<[f32; 3]> =
+        (0..9).map(|k| [-1.2 + 0.1 * (k % 3) as f32, 0.1 * (k / 3) as f32, 0.0]).collect();
+    let bubbles = UploadedFoam::moving(&harness.device, &places, &[[0.0; 3]; 9], &[], &[], &[2; 9]).unwrap();
+    let camera = Camera::orbit([0.0; 3], 6.0, 0.0, 0.0, 40.0);
+    let base = Frame::new(camera, Domain::closed([-1.5; 3], [1.5; 3]));
+    let with_bubbles = base.with_foam(DrawnFoam::new(bubbles.buffers(), 0.2));
+    let without = harness.draw(SIZE, &with_bubbles);
+    let ([left, right], [top, bottom], count) =
+        changed(&draw(&mut harness, [0.8, 0.0, 0.0], 0.0, with_bubbles), &without);
+    assert!(
+        count > 200 && left > 110 && right - left < 40 && bottom - top < 40,
+        "{left}..{right}, {top}..{bottom}"
+    );
+    // Control: bubbles are visible.
+    assert!(changed(&without, &harness.draw(SIZE, &base)).2 > 20);
+}
+
+#[test]
 fn invalid_droplets_are_refused() {
     let Some(harness) = common::harness() else { return };
     let error = UploadedDroplets::new(&harness.device, &[[0.0; 3]; 2], &[[0.0; 3]]).unwrap_err();

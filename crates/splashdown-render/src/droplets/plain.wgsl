@@ -17,8 +17,9 @@ fn light_towards(origin: vec3f, direction: vec3f, spread: f32) -> vec3f {
     let distance = textureLoad(solid, vec2u(clamp(uv * size, vec2f(0.0), size - 1.0)), 0).r;
     let middle = 0.5 * (globals.box_min + globals.box_max);
     let ahead = distance + length(middle - globals.eye) - length(from_eye);
-    if distance > NO_BODY || dot(direction, from_eye) <= 0.0 {
+    // A body nearer than the droplet hides it here, and is not behind it.
+    if distance > NO_BODY || ahead <= 0.0 || dot(direction, from_eye) <= 0.0 {
         return environment(origin, direction, spread);
     }
-    return scene_at(origin + direction * max(ahead, 0.0));
+    return scene_at(origin + direction * ahead);
 }

@@ -16,9 +16,9 @@ struct Nozzle {
     disc: u32,
     interval: f32,
     wobble: f32,
-    contraction_across: f32,
-    contraction_up: f32,
-    reach: f32,
+    share_across: f32,
+    share_up: f32,
+    stretching: f32,
     submerged_at: f32,
 }
 

@@ -38,12 +38,12 @@ gpu_struct! {
         interval: f32,
         /// How far, at most, its particles are created beside their columns, in m.
         wobble: f32,
-        /// Rate in 1/s at which fluid that leaves into air contracts along `across`; negative if it widens.
-        contraction_across: f32,
+        /// Share of the stretching of a jet in air that is its contraction along `across`.
+        share_across: f32,
         /// The same along `up`.
-        contraction_up: f32,
-        /// Distance from the pipe in m within which particles are beside it.
-        reach: f32,
+        share_up: f32,
+        /// Rate at which gravity stretches a jet over the gravity along it, in s/m.
+        stretching: f32,
         /// Number of particles beside the pipe from which its outlet is under water; fewer are that share of it.
         submerged_at: f32,
     }
@@ -83,12 +83,19 @@ impl Nozzle {
         self.is_within(q, 0.0) && q.z >= -0.25 * particle_spacing && q.z <= self.length
     }
 
-    /// True if a point in m is outside the pipe and within `reach` of its sides.
+    /// True if a point in m is outside the pipe and less than one and a half spacings from its sides, and the jet contracts.
     #[inline]
-    pub fn is_beside(&self, x: Vec3) -> bool {
+    pub fn is_beside(&self, x: Vec3, particle_spacing: f32) -> bool {
         let q = self.local(x);
-        q.z >= 0.0 && q.z <= self.length && self.is_within(q, self.reach) && !self.is_within(q, 0.0)
+        let is_near = q.z >= 0.0 && q.z <= self.length && self.is_within(q, Self::REACH * particle_spacing);
+        is_near && !self.is_within(q, 0.0) && (self.share_across != 0.0 || self.share_up != 0.0)
     }
+
+    /// Distance from the pipe in spacings within which particles are beside it.
+    pub const REACH: f32 = 1.5;
+
+    /// The largest velocity of the rim of a jet across its direction, over its speed.
+    pub const MOST_CONTRACTION: f32 = 0.5;
 
     /// Whether a place is within the cross-section, enlarged by `margin` (m) on all sides.
     #[inline]
@@ -102,23 +109,23 @@ impl Nozzle {
     }
 
     /// The velocity in m/s that a particle in the pipe has after a step of `dt` (s): that of the piston. If it leaves in
-    /// this step, it also contracts, with `beside` particles beside the pipe.
+    /// this step, it also contracts, with `beside` particles beside the pipe and gravity in m/s^2.
     #[inline]
-    pub fn velocity(&self, x: Vec3, dt: f32, beside: u32) -> Vec3 {
+    pub fn velocity(&self, x: Vec3, gravity: Vec3, dt: f32, beside: u32) -> Vec3 {
         let q = self.local(x);
         let piston = self.speed * self.direction;
         if q.z + self.speed * dt <= self.length {
             return piston;
         }
+        let rate = self.stretching * gravity.dot(self.direction);
+        let inwards = |share: f32, half: f32| {
+            let most = Self::MOST_CONTRACTION * self.speed / half;
+            (share * rate).clamp(-most, most)
+        };
         let in_air = 1.0 - (beside as f32 / self.submerged_at).min(1.0);
-        let inwards = self.contraction_across * q.x * self.across + self.contraction_up * q.y * self.up;
-        piston - in_air * inwards
-    }
-
-    /// Whether its fluid contracts or widens in air.
-    #[inline]
-    pub fn contracts(&self) -> bool {
-        self.contraction_across != 0.0 || self.contraction_up != 0.0
+        let across = in_air * inwards(self.share_across, self.half_across) * q.x;
+        let up = in_air * inwards(self.share_up, self.half_up) * q.y;
+        piston - across * self.across - up * self.up
     }
 }
 

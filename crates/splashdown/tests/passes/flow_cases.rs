@@ -33,9 +33,9 @@ fn nozzles() -> Vec<Nozzle> {
         disc: 1,
         interval: 0.97 * SPACING,
         wobble: 0.0,
-        contraction_across: 7.0,
-        contraction_up: 3.0,
-        reach: 0.04,
+        share_across: 0.7,
+        share_up: 0.3,
+        stretching: 14.0,
         submerged_at: 9.0,
     };
     let rectangle = Nozzle {
@@ -47,7 +47,8 @@ fn nozzles() -> Vec<Nozzle> {
         disc: 0,
         speed: 0.9,
         wobble: 0.11 * SPACING,
-        contraction_across: -5.0,
+        // More than the limit.
+        share_across: -1.4,
         ..disc
     };
     let late = Nozzle { start: 5.0, first_point: 20, points: 3, ..disc };
@@ -243,9 +244,10 @@ fn drive() -> Case {
     let mut all = nozzles.clone();
     all.push(Nozzle { back: Vec3::new(0.0, 0.1, 0.2), most: 10, points: 5, first_point: 25, ..nozzles[0] });
     plans[4 * EmissionSchedule::WORDS + EmissionSchedule::EMITTED] = 6;
-    // The outlet of the disc is a third under water.
+    // The outlet of the disc is a third under water, that of the last, which is off, twice.
     plans[EmissionSchedule::BESIDE] = 3;
     plans[EmissionSchedule::COUNTED] = 2;
+    plans[4 * EmissionSchedule::WORDS + EmissionSchedule::BESIDE] = 18;
     let accelerations: Vec<Vec4> = (0..world.len()).map(|i| world.normals[i] * 3.0).collect();
     let (mut expected, mut expected_plans) = (accelerations.clone(), plans.clone());
     let (mut driven, mut leaving) = (0, [0; 2]);
@@ -269,19 +271,25 @@ fn drive() -> Case {
             let mut velocity = f64::from(nozzle.speed) * nozzle.direction.as_dvec3();
             if along + f64::from(nozzle.speed * world.state.dt) > f64::from(nozzle.length) {
                 let in_air = if k == 0 { 2.0 / 3.0 } else { 1.0 };
-                velocity -= in_air * f64::from(nozzle.contraction_across) * across * nozzle.across.as_dvec3();
-                velocity -= in_air * f64::from(nozzle.contraction_up) * up * nozzle.up.as_dvec3();
+                let along_gravity = world.params.gravity.as_dvec3().dot(nozzle.direction.as_dvec3());
+                let rate = |share: f32, half: f32| {
+                    let most = f64::from(0.5 * nozzle.speed / half);
+                    in_air * (f64::from(share * nozzle.stretching) * along_gravity).clamp(-most, most)
+                };
+                velocity -= rate(nozzle.share_across, nozzle.half_across) * across * nozzle.across.as_dvec3();
+                velocity -= rate(nozzle.share_up, nozzle.half_up) * up * nozzle.up.as_dvec3();
                 leaving[k] += 1;
             }
             let change = velocity.as_vec3() - world.velocities[i].xyz();
             // The fourth component keeps the particle from being shifted.
             *a = (change / world.state.dt).extend(1.0);
             driven += 1;
+            continue;
         }
-        for (k, nozzle) in nozzles[..2].iter().enumerate() {
+        for (k, nozzle) in all.iter().enumerate() {
             let along = local(nozzle)[2];
             let is_along = along >= 0.0 && along <= f64::from(nozzle.length);
-            if is_along && within(nozzle, nozzle.reach.into()) && !within(nozzle, 0.0) {
+            if is_along && within(nozzle, 1.5 * f64::from(SPACING)) && !within(nozzle, 0.0) {
                 expected_plans[k * EmissionSchedule::WORDS + EmissionSchedule::COUNTED] += 1;
             }
         }

@@ -7,7 +7,7 @@ pub(super) fn emission_schedule(buffers: EmissionScheduleBindings<'_>) {
     let mut slot = cell_start[grid.cell_count as usize];
     for (nozzle, schedule) in nozzles.iter().zip(schedules.chunks_exact_mut(EmissionSchedule::WORDS)) {
         schedule[EmissionSchedule::LAYER] = 0;
-        // A step after the end of the frame counts nothing.
+        // Such a step, after the end of a frame for example, has counted nothing.
         if state.run_count == 0 {
             continue;
         }

@@ -13,7 +13,7 @@ fn emission_schedule() {
         let nozzle = nozzles[k];
         let w = k * SCHEDULE_WORDS;
         schedules[w + SCHEDULE_LAYER] = 0u;
-        // A step after the end of the frame counts nothing.
+        // Such a step, after the end of a frame for example, has counted nothing.
         if (state.run_count == 0u) {
             continue;
         }

@@ -3,6 +3,9 @@
 //! The fluid in a nozzle advances by speed * dt per step. Once it has advanced by a spacing the next layer is due, at
 //! the distance that exceeds the spacing. New particles use the array places behind the active ones, which the sort
 //! leaves free. A layer without enough free places is not created, and its particles are counted as refused.
+//!
+//! The particles beside a pipe that the step has counted (`inflow_constraint`) become those of the step before. Steps
+//! without particles to move, such as those after the end of a frame, count nothing and change nothing.
 
 mod cpu;
 

@@ -1,5 +1,5 @@
-//! Moves the fluid in a nozzle like a piston: a = (u - v) / dt, so that the step ends with the velocity u of the emitter,
-//! its speed times its direction.
+//! Moves the fluid in a nozzle like a piston: a = (u - v) / dt, so that the step ends with the velocity u. Before the outlet
+//! this is the speed of the emitter along its direction.
 //!
 //! Particles are created at rest density behind others of the same lattice, more than a support radius before the
 //! outlet. Until they reach the outlet no other force acts on them: their kernel support is incomplete at the back face,
@@ -10,9 +10,9 @@
 //! air causes this, which pressures that are not negative do not have: the jet kept its width, and its density fell to
 //! 560 kg/m^3 where its speed had grown from 1 to 2.4 m/s. In the step in which a particle leaves the nozzle, u therefore
 //! contains a velocity towards the axis, with which the divergence of the jet vanishes at the outlet
-//! ([`contraction`](super::outlet::contraction)). Later the positive pressure of the denser jet limits it. A jet upwards
+//! ([`shares`](super::outlet::shares)). Later the positive pressure of the denser jet limits it. A jet upwards
 //! widens in the same way. Fluid around the outlet carries the weight of the jet, which then keeps its width: particles
-//! beside the pipe are counted in each step for the next one.
+//! beside the pipe, and in no other, are counted in each step for the next one.
 
 mod cpu;
 
