@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pipe_full_of_layers_is_at_most_at_rest_density() {
+    fn a_pipe_full_of_layers_is_hardly_denser_than_water_at_rest() {
         let mut clamped: f32 = 0.0;
         for k in 0..350 {
             let radius = 1.0 + 0.02 * k as f32;

@@ -60,7 +60,7 @@ const RIM: f32 = 0.25;
 
 /// The layer of a disc. The points of a square lattice within the radius represent it; of several lattices, which differ
 /// in their position relative to the centre, the one with the best area is used. Points nearer to the rim than `RIM`
-/// are moved towards the centre, because an outlet may touch a wall, and the others make [room](make_room) for them.
+/// are moved towards the centre, because an outlet may touch a wall, and the others make room for them.
 pub fn disc_layer(radius: f32, spacing: f32) -> Layer {
     let reach = (radius / spacing).ceil() as i32 + 1;
     let area = PI * radius * radius;

@@ -10,7 +10,7 @@
 //! air causes this, which pressures that are not negative do not have: the jet kept its width, and its density fell to
 //! 560 kg/m^3 where its speed had grown from 1 to 2.4 m/s. In the step in which a particle leaves the nozzle, u therefore
 //! contains a velocity towards the axis, with which the divergence of the jet vanishes at the outlet
-//! ([`shares`](super::outlet::shares)). Later the positive pressure of the denser jet limits it. A jet upwards
+//! (`shares` in `outlet`). Later the positive pressure of the denser jet limits it. A jet upwards
 //! widens in the same way. Fluid around the outlet carries the weight of the jet, which then keeps its width: particles
 //! beside the pipe, and in no other, are counted in each step for the next one.
 
