@@ -96,6 +96,41 @@ fn relative_section(particles: &Particles, radius: f32, speed: f32, heights: &st
     2.0 * squares[squares.len() / 2] / (radius * radius * speed / there)
 }
 
+/// The median density over that at rest in a jet of water that leaves a nozzle with 1 m/s along x and has fallen by about
+/// 0.15 m.
+fn density_of_a_bent_jet(surface_tension: &str) -> f32 {
+    let text = format!(
+        "[scene]\nname = \"jet\"\nduration = 0.3\n[domain]\nmin = [-0.3, -0.5, -0.2]\nmax = [0.3, 0.3, 0.2]\n\
+         open = [\"y_min\", \"x_max\"]\n[fluid]\nparticle_spacing = 0.01\n[[emitter]]\nname = \"a\"\nradius = 0.05\n\
+         position = [-0.25, 0.1, 0]\ndirection = [1, 0, 0]\nspeed = 1\n[solver]\nmethod = \"dfsph\"\n\
+         surface_tension = \"{surface_tension}\"\n[surface]\nenabled = false\n"
+    );
+    let scene = Scene::parse(&text, "jet.toml").unwrap();
+    let mut simulation = Simulation::with_executor(&scene, Executor::from(CpuExecutor::new())).unwrap();
+    simulation.advance(0.3).unwrap();
+    let particles = simulation.particles().unwrap();
+    let there = |x: &[f32; 3]| (-0.1..0.0).contains(&x[0]);
+    let mut densities: Vec<f32> = particles
+        .positions
+        .iter()
+        .zip(&particles.densities)
+        .filter(|(x, _)| there(x))
+        .map(|(_, density)| density / 1000.0)
+        .collect();
+    assert!(densities.len() > 300, "{} particles", densities.len());
+    densities.sort_unstable_by(f32::total_cmp);
+    densities[densities.len() / 2]
+}
+
+#[test]
+fn a_jet_that_bends_keeps_its_density() {
+    let density = density_of_a_bent_jet("none");
+    assert!(density > 0.9, "{density}");
+    // Control: there is no tension inside a fluid with a model of surface tension.
+    let control = density_of_a_bent_jet("csf");
+    assert!(control < 0.8, "{control}");
+}
+
 #[test]
 fn a_falling_jet_contracts_and_a_rising_one_widens() {
     // Down, a jet is 2.4 times as fast 0.25 m below the outlet: if it keeps its width, its section is 2.4 times too large. Up,

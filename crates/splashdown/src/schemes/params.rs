@@ -107,7 +107,11 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         max_dt,
         min_dt: solver.min_dt,
         closed: closed.iter().enumerate().map(|(bit, &closed)| u32::from(closed) << bit).sum(),
-        clamp_pressure: u32::from(solver.negative_pressure == NegativePressure::Clamp),
+        clamp_pressure: u32::from(if scheme.is_implicit() {
+            is_viscous || solver.surface_tension != SurfaceTension::None
+        } else {
+            solver.negative_pressure == NegativePressure::Clamp
+        }),
         particle_count: particles,
         approach_damping_factor: if scheme.is_density_integrated || scheme.is_implicit() { 0.0 } else { 1.0 },
         summed_mass: if scheme.is_density_integrated {

@@ -52,7 +52,8 @@ gpu_struct! {
         min_dt: f32,
         /// Bit 2 * axis + side is set if that side of the domain is closed.
         closed: u32,
-        /// 1 if negative pressures are set to zero.
+        /// 1 if negative pressures are set to zero. An implicit pressure is otherwise at least that of the
+        /// [`tension_limit`](Self::tension_limit).
         clamp_pressure: u32,
         /// Number of particles, including removed ones and those not yet emitted.
         particle_count: u32,
@@ -112,6 +113,9 @@ gpu_struct! {
     }
 }
 
+/// The height in spacings of the water whose weight the tension of the implicit pressure may carry.
+const TENSION_HEIGHT: f32 = 2.0;
+
 /// The least `cfl_factor` for the speed of sound in the densest fluid, about half of the longest stable step. With 1.0 a block
 /// that was thrown into a corner gained energy.
 const COMPRESSED_FACTOR: f32 = 0.9;
@@ -129,6 +133,21 @@ impl Params {
     /// an implicit scheme describe edges with the stretched kernel, so that it is zero there.
     pub fn stretched_from(&self) -> f32 {
         if self.is_implicit == 1 { 0.0 } else { Self::STRETCHED_FROM * self.particle_spacing }
+    }
+
+    /// The largest tension of the implicit pressure over the rest density, in m^2/s^2: the weight of water two spacings high.
+    pub fn tension_limit(&self) -> f32 {
+        if self.clamp_pressure == 1 {
+            0.0
+        } else {
+            TENSION_HEIGHT * self.gravity.length() * self.particle_spacing
+        }
+    }
+
+    /// The rate in 1/s at which the implicit pressure closes deficits of density inside the fluid: the speed after a fall
+    /// through one spacing, per spacing.
+    pub fn closing_rate(&self) -> f32 {
+        (2.0 * self.gravity.length() / self.particle_spacing).sqrt()
     }
 
     /// The length of the next step, for the largest stable step and the remaining time of the frame.

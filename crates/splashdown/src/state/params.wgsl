@@ -51,6 +51,16 @@ struct Params {
     lattice_moment: f32,
 }
 
+// See Params::tension_limit.
+fn tension_limit() -> f32 {
+    return select(2.0 * length(params.gravity) * params.particle_spacing, 0.0, params.clamp_pressure == 1u);
+}
+
+// See Params::closing_rate.
+fn closing_rate() -> f32 {
+    return sqrt(2.0 * length(params.gravity) / params.particle_spacing);
+}
+
 fn pressure_at(density: f32) -> f32 {
     let x = density / params.rest_density;
     let stiffness = params.rest_density * params.sound_speed * params.sound_speed / params.exponent;

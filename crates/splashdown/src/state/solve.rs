@@ -36,6 +36,9 @@ gpu_struct! {
 }
 
 impl SolveState {
+    /// Marks a particle whose motion a nozzle determines, instead of a pressure.
+    pub const NO_PRESSURE: f32 = -1e30;
+
     /// The state at the beginning of a step, with the relaxation of the Jacobi map.
     pub fn new(is_stopped: bool, relaxation: f32) -> Self {
         Self {

@@ -13,3 +13,6 @@ struct SolveState {
     unused_2: f32,
     unused_3: f32,
 }
+
+// Marks a particle whose motion a nozzle determines, instead of a pressure.
+const NO_PRESSURE: f32 = -1e30;

@@ -20,7 +20,8 @@ const KERNELS: [(Kernel, &str); 3] = [
 ];
 
 pub fn cases() -> Vec<Case> {
-    let open = Params { closed: 0b110111, artificial_viscosity: 0.0, ..params(2.5) };
+    // Without tension.
+    let open = Params { closed: 0b110111, artificial_viscosity: 0.0, clamp_pressure: 1, ..params(2.5) };
     let mut cases = Vec::new();
     for (kernel, word) in KERNELS {
         for (name, params) in [("closed", params(2.0)), ("wider support, open above", open)] {
@@ -222,15 +223,23 @@ fn predict(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool)
     let world = world(params);
     let (n, c) = (world.len(), constants(&world));
     let solve = solving();
-    let iterates: Vec<Vec4> = vectors(n, 0).iter().map(|v| v.with_x(2.0 * v.x.abs())).collect();
+    let limit = f64::from(world.params.tension_limit());
+    // A third is under tension, partly above the limit.
+    let iterates: Vec<Vec4> = vectors(n, 0)
+        .iter()
+        .enumerate()
+        .map(|(i, v)| v.with_x(if i % 3 == 0 { -limit as f32 * v.x.abs() } else { 2.0 * v.x.abs() }))
+        .collect();
     let free_velocities: Vec<Vec4> = vectors(n, 4)
         .iter()
         .enumerate()
         .map(|(i, v)| v.with_w(if i % 11 == 0 { 1.0 } else { 0.0 }))
         .collect();
     let solid: Vec<Vec4> = vectors(n, 8).iter().map(|v| 20.0 * *v).collect();
-    let pressure =
-        |j: usize| (f64::from(iterates[j].x) + f64::from(0.7_f32) * f64::from(iterates[j].y)).max(0.0);
+    let pressure = |j: usize| {
+        let least = if iterates[j].x < 0.0 { -limit } else { 0.0 };
+        (f64::from(iterates[j].x) + f64::from(0.7_f32) * f64::from(iterates[j].y)).max(least)
+    };
     let mut predicted = Output::new("predicted", poisoned(n));
     let groups = world.active().div_ceil(64);
     let mut impulses = Output::new("impulses", Data::Vec4(vec![Vec4::ZERO; groups]).poison());
@@ -241,7 +250,7 @@ fn predict(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool)
         let v = free_velocities[i].xyz().as_dvec3();
         if free_velocities[i].w == 1.0 {
             (0..3).for_each(|k| predicted.push(v[k], 1.0));
-            predicted.push(-1.0, 0.0);
+            predicted.push(SolveState::NO_PRESSURE.into(), 0.0);
             speeds[i / 64].0 += v.length_squared();
             speeds[i / 64].1 += 2.0 * v.length() * (v.length() + 0.1);
             continue;
@@ -295,16 +304,31 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
     let world = world(params);
     let (n, c) = (world.len(), constants(&world));
     let solve = solving();
+    let limit = world.params.tension_limit();
     let predicted: Vec<Vec4> = vectors(n, 0)
         .iter()
         .enumerate()
-        .map(|(i, v)| v.with_w(if i % 13 == 0 { -1.0 } else { (2.0 * v.w).max(0.0) }))
+        .map(|(i, v)| {
+            v.with_w(match i % 13 {
+                0 => SolveState::NO_PRESSURE,
+                // Tension within the limit and above it.
+                1..=3 => -limit * v.w.abs(),
+                4 => -1.5 * limit,
+                _ => (2.0 * v.w).max(0.0),
+            })
+        })
         .collect();
     // Some of the gradients times the support are below the threshold of the free surface, some above.
     let stiffness: Vec<Vec4> = vectors(n, 4).iter().map(|v| (6.0 * *v).with_w(400.0 * (1.1 + v.w))).collect();
-    let solid: Vec<Vec4> = vectors(n, 8).iter().map(|v| 6.0 * *v).collect();
-    // With an excess of density as the fourth component.
-    let before: Vec<Vec4> = vectors(n, 12).iter().map(|v| v.with_w(0.1 * v.w)).collect();
+    // Half of the particles are next to a body.
+    let solid: Vec<Vec4> = vectors(n, 8).iter().enumerate().map(|(i, v)| 6.0 * (i % 2) as f32 * *v).collect();
+    // With an excess of density as the fourth component: deficits around 2 %, larger ones, and those of spray.
+    let excess = |i: usize, w: f32| [0.1 * w, 0.03 * w, -0.3 + 0.1 * w][i % 3];
+    let before: Vec<Vec4> =
+        vectors(n, 12).iter().enumerate().map(|(i, v)| v.with_w(excess(i, v.w))).collect();
+    // Particles that may be under tension, and those among them with a deficit.
+    let mut inside = [0, 0];
+    let label = format!("implicit.residual.{word}{}", suffix(bodies));
     let mut iterates = Output::new("iterates", Data::Vec4(before.clone()));
     let mut residuals = Output::new("residuals", poisoned(n.div_ceil(64)));
     let mut sums = vec![([0.0; 4], [0.0; 4]); n.div_ceil(64)];
@@ -314,7 +338,7 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         let (values, sizes) = &mut sums[i / 64];
         values[2] += excess.max(0.0);
         sizes[2] += 1.0;
-        if k < 0.0 {
+        if predicted[i].w == SolveState::NO_PRESSURE {
             (0..3).for_each(|_| iterates.push(0.0, 0.0));
             iterates.push(excess, 0.0);
             continue;
@@ -339,26 +363,52 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         let missing = f64::from(world.params.surface_completion) * steepness.powf(1.5);
         let complete = excess.max((excess + missing).min(0.02));
         let compressibility = f64::from(world.params.compressibility);
-        let r = complete + c.dt * rate - compressibility * k;
+        let is_inside = limit > 0.0
+            && complete > -0.3
+            && c.support * normal.length() < 0.7
+            && (!bodies || solid[i] == Vec4::ZERO);
+        let (mut least, mut pushed, mut pulled) = (0.0, complete, complete);
+        if is_inside {
+            (least, inside[0]) = (f64::from(-limit), inside[0] + 1);
+            if complete < 0.0 {
+                let closing = (2.0 * f64::from(world.params.gravity.length())
+                    / f64::from(world.params.particle_spacing))
+                .sqrt()
+                    * c.dt;
+                (pulled, inside[1]) = ((closing * complete).max(complete), inside[1] + 1);
+                pushed = pulled.min(complete + 0.02);
+            }
+        }
+        let change = c.dt * rate - compressibility * k;
+        let r = match k {
+            k if k > 0.0 => pushed + change,
+            k if k < 0.0 => pulled + change,
+            _ if pushed + change > 0.0 => pushed + change,
+            _ => (pulled + change).min(0.0),
+        };
         let r_size = 1.0 + c.dt * size;
         let diagonal =
             c.dt * c.dt * (gradient.length_squared() + f64::from(stiffness[i].w)) + compressibility;
-        let next = (k + 0.5 * r / diagonal).max(0.0);
-        let step_size = k + 0.5 * r_size / diagonal;
+        let [above, below] = [pushed, pulled].map(|excess| k + 0.5 * (excess + change) / diagonal);
+        let next = if above > 0.0 { above } else { below.clamp(least, 0.0) };
+        let step_size = k.abs() + 0.5 * r_size / diagonal;
         iterates.push(next, step_size);
         iterates.push(f64::from(0.7_f32) * f64::from(before[i].y) + f64::from(before[i].z), 2.0);
         iterates.push(next - k, step_size);
         iterates.push(excess, 0.0);
-        values[0] += if k > 0.0 { r.abs() } else { r.max(0.0) };
-        sizes[0] += r_size;
-        values[3] += k * r;
-        sizes[3] += k * r_size;
+        let error = if k > least { r.abs() } else { r.max(diagonal * (least - k)) };
+        values[0] += error;
+        sizes[0] += r_size + diagonal * (least - k).max(0.0);
+        values[3] += if error > 0.0 { k * r } else { 0.0 };
+        sizes[3] += k.abs() * r_size;
         values[1] += diagonal * (next - k) * (next - k);
         sizes[1] += 2.0 * diagonal * (next - k).abs() * step_size;
     }
     for (values, sizes) in &sums[..world.active().div_ceil(64)] {
         (0..4).for_each(|k| residuals.push(values[k], sizes[k]));
     }
+    let some = if limit > 0.0 { 20 } else { 0 };
+    assert!(inside[0] >= 2 * some && inside[1] >= some, "{label}, {name}: {inside:?} inside");
     let mut input = base(&world);
     input.extend([
         Data::Solve(solve),
@@ -374,7 +424,6 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         Data::Vec4(all) => Data::Vec4(all[..world.active().div_ceil(64)].to_vec()),
         other => other,
     };
-    let label = format!("implicit.residual.{word}{}", suffix(bodies));
     case(label, name, n, input, vec![iterates, residuals], |input| {
         let Data::Params(params) = &mut input[0] else { panic!("no constants") };
         params.surface_completion *= 1.1;
@@ -393,7 +442,7 @@ fn begin(name: &str, run_count: u32) -> Case {
     let expected = Data::Solve(SolveState::new(run_count == 0, 0.3));
     wide(expected.floats()).into_iter().for_each(|value| solve.push(value, 0.0));
     for i in 0..world.active() {
-        iterates.push(pressures[i].max(0.0).into(), 0.0);
+        iterates.push(pressures[i].into(), 0.0);
         (0..2).for_each(|_| iterates.push(0.0, 0.0));
         iterates.push(f64::from(world.densities[i].x) / c.rest - 1.0, 1.0);
         let v = speed(&world, i) + c.dt * other[i].xyz().as_dvec3();
@@ -520,7 +569,7 @@ fn finish(name: &str, renewal: f32, before: f32) -> Case {
     let predicted: Vec<Vec4> = vectors(n, 0)
         .iter()
         .enumerate()
-        .map(|(i, v)| if i % 9 == 0 { v.with_w(-1.0) } else { v.with_w(v.w.abs()) })
+        .map(|(i, v)| if i % 9 == 0 { v.with_w(SolveState::NO_PRESSURE) } else { *v })
         .collect();
     let other = vectors(n, 4);
     let mut after = Output::new("predicted", Data::Vec4(predicted.clone()));
@@ -539,7 +588,8 @@ fn finish(name: &str, renewal: f32, before: f32) -> Case {
         let free = speed(&world, i) + dt * other[i].xyz().as_dvec3();
         let scale = f64::from(0.9_f32);
         let u = free + scale * (predicted[i].xyz().as_dvec3() - free);
-        let k = scale * f64::from(predicted[i].w.max(0.0));
+        let has_pressure = predicted[i].w != SolveState::NO_PRESSURE;
+        let k = if has_pressure { scale * f64::from(predicted[i].w) } else { 0.0 };
         // The acceleration by the pressure alone, which bodies continue along their surface.
         let by_pressure = (u - free) / dt;
         (0..3).for_each(|axis| after.push(by_pressure[axis], 2.0 / dt));
@@ -549,8 +599,8 @@ fn finish(name: &str, renewal: f32, before: f32) -> Case {
         accelerations.push(other[i].w.into(), 0.0);
         let rho = f64::from(world.densities[i].x);
         densities.push(rho, 0.0);
-        densities.push(f64::from(0.9_f32) * k * rho * rho / 1000.0, k * 1000.0);
-        let old = f64::from(old[i].max(0.0));
+        densities.push(f64::from(0.9_f32) * k * rho * rho / 1000.0, k.abs() * 1000.0);
+        let old = f64::from(old[i]);
         pressures.push(0.5 * (old + f64::from(renewal) * (k - old)), 1.0);
         largest = largest.max(old + f64::from(renewal.max(1.0 - renewal)) * (k - old));
     }

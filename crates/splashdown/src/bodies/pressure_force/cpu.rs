@@ -35,7 +35,7 @@ pub(super) fn pressure_force(buffers: PressureForceBindings<'_>) {
                     continue;
                 }
                 totals.resize(bodies.len(), [0; 6]);
-                let (x, pressure) = (positions[i].xyz(), predicted[i].w.max(0.0));
+                let (x, pressure) = (positions[i].xyz(), predicted[i].w);
                 let by_pressure = predicted[i].xyz();
                 let mut a = whole.xyz();
                 for contact in contacts[i].iter().filter(|contact| contact.body != Contact::NONE) {

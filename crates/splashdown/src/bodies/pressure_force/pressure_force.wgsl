@@ -17,7 +17,7 @@ fn pressure_force(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
         return;
     }
     let x = sorted_positions[i].xyz;
-    let pressure = max(predicted[i].w, 0.0);
+    let pressure = predicted[i].w;
     let by_pressure = predicted[i].xyz;
     let scale = 1.0 / params.support_radius;
     var a = whole.xyz;

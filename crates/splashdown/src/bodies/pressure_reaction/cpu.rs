@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use super::PressureReactionBindings;
 use crate::bodies::reaction::{self, Totals};
 use crate::bodies::types::{Body, Contact};
+use crate::state::SolveState;
 
 /// Particles per task.
 const CHUNK: usize = 4096;
@@ -31,7 +32,7 @@ pub(super) fn pressure_reaction(buffers: PressureReactionBindings<'_>) {
             for (k, pair) in pairs.iter().enumerate() {
                 let i = chunk * CHUNK + k;
                 let pressure = predicted[i].w;
-                if positions[i].w != 0.0 || pressure.is_nan() || pressure <= 0.0 {
+                if positions[i].w != 0.0 || pressure.is_nan() || pressure == SolveState::NO_PRESSURE {
                     continue;
                 }
                 for contact in pair.iter().filter(|contact| contact.body != Contact::NONE) {

@@ -9,7 +9,7 @@
 @compute @workgroup_size(64)
 fn pressure_reaction(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = linear_index(gid, groups, 64u);
-    if (solve.stopped != 0u || i >= state.run_count || sorted_positions[i].w != 0.0 || predicted[i].w <= 0.0) {
+    if (solve.stopped != 0u || i >= state.run_count || sorted_positions[i].w != 0.0 || predicted[i].w == NO_PRESSURE) {
         return;
     }
     for (var c = 0u; c < 2u; c++) {

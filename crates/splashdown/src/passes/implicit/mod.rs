@@ -13,7 +13,8 @@
 //!
 //! s completes the density at the free surface ([`residual`]); forces and diagonal do not contain its derivative.
 //!
-//! The solution has k >= 0, r <= 0 and k r = 0. An image has the pressure of its particle and reflects its velocity; a body
+//! The solution has k >= 0, r <= 0 and k r = 0. Inside the fluid it may be a small tension, which closes a deficit of density
+//! slowly: [`residual`] states its limits. An image has the pressure of its particle and reflects its velocity; a body
 //! counts twice in b, because it reflects the fluid. So D' is the adjoint of D, the matrix dt^2 D D' + 1 / c^2 is symmetric
 //! and positive definite, and the forces conserve momentum. A dynamic body is a part of the system: its velocity in D is
 //! the one that the pressure gives it. The compressibility 1 / c^2 is too small to matter except in a sealed space that is
@@ -21,7 +22,8 @@
 //!
 //! # The solver
 //! Nonsmooth nonlinear conjugate gradients (Silcowitz, Niebe & Erleben 2010) on the projected Jacobi map
-//! k <- max(k + w r / a, 0), where a is the diagonal and w the relaxation, started with a running mean of the old pressures:
+//! k <- max(k + w r / a, 0), where a is the diagonal and w the relaxation, started with a running mean of the old pressures
+//! (without tension):
 //!
 //! ```text
 //! predict    k = max(k_J + beta p, 0);  u = v* - dt D' k

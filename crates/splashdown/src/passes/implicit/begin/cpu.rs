@@ -31,7 +31,7 @@ pub(super) fn begin(buffers: BeginBindings<'_>) {
         for (k, (iterate, free)) in iterates.iter_mut().zip(free_velocities).enumerate() {
             let i = chunk * CHUNK + k;
             let excess = densities[i].x / params.rest_density - 1.0;
-            *iterate = Vec4::new(pressures[i].max(0.0), 0.0, 0.0, excess);
+            *iterate = Vec4::new(pressures[i], 0.0, 0.0, excess);
             let other = accelerations[i];
             *free = (velocities[i].xyz() + state.dt * other.xyz()).extend(other.w);
         }

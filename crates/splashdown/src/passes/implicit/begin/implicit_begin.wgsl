@@ -31,7 +31,7 @@ fn implicit_begin(@builtin(global_invocation_id) gid: vec3<u32>, @builtin(num_wo
         return;
     }
     let excess = densities[i].x / params.rest_density - 1.0;
-    iterates[i] = vec4(max(sorted_pressures[i], 0.0), 0.0, 0.0, excess);
+    iterates[i] = vec4(sorted_pressures[i], 0.0, 0.0, excess);
     let other = accelerations[i];
     free_velocities[i] = vec4(sorted_velocities[i].xyz + state.dt * other.xyz, other.w);
 }

@@ -2,7 +2,7 @@ use glam::Vec4Swizzles;
 use rayon::prelude::*;
 
 use super::FinishBindings;
-use crate::state::StepCounters;
+use crate::state::{SolveState, StepCounters};
 
 /// Particles per task.
 const CHUNK: usize = 4096;
@@ -37,12 +37,13 @@ pub(super) fn finish(buffers: FinishBindings<'_>) {
                 let before = velocities[i].xyz();
                 let free = before + state.dt * a.xyz();
                 let u = free + solve.scale * (predicted[k].xyz() - free);
-                let pressure = solve.scale * predicted[k].w.max(0.0);
+                let accepted = predicted[k].w;
+                let pressure = if accepted == SolveState::NO_PRESSURE { 0.0 } else { solve.scale * accepted };
                 let rho = densities[k].x;
                 predicted[k] = ((u - free) / state.dt).extend(pressure);
                 *a = ((u - before) / state.dt).extend(a.w);
                 densities[k].y = params.pressure_factor * pressure * rho * rho / params.rest_density;
-                let old = sorted_pressures[i].max(0.0);
+                let old = sorted_pressures[i];
                 pressures[k] = solve.warm_start * (old + solve.renewal * (pressure - old));
                 largest = largest.max(old + solve.renewal.max(1.0 - solve.renewal) * (pressure - old));
             }

@@ -16,14 +16,14 @@ fn finish(i: u32) -> f32 {
     let other = accelerations[i];
     let free = before + state.dt * other.xyz;
     let u = free + solve.scale * (predicted[i].xyz - free);
-    let k = solve.scale * max(predicted[i].w, 0.0);
+    let k = select(solve.scale * predicted[i].w, 0.0, predicted[i].w == NO_PRESSURE);
     let rho = densities[i].x;
     predicted[i] = vec4((u - free) / state.dt, k);
     accelerations[i] = vec4((u - before) / state.dt, other.w);
     densities[i] = vec2(rho, params.pressure_factor * k * rho * rho / params.rest_density);
-    let old = max(sorted_pressures[i], 0.0);
+    let old = sorted_pressures[i];
     pressures[i] = solve.warm_start * mix(old, k, solve.renewal);
-    return mix(old, k, max(solve.renewal, 1.0 - solve.renewal));
+    return max(mix(old, k, max(solve.renewal, 1.0 - solve.renewal)), 0.0);
 }
 
 @compute @workgroup_size(256)

@@ -7,6 +7,7 @@ use super::PredictBindings;
 use crate::boundary::Images;
 use crate::kernel::Kernel;
 use crate::pairs::{NeighbourLists, Sorted, Values};
+use crate::state::SolveState;
 
 /// Particles per task.
 const CHUNK: usize = 4096;
@@ -38,6 +39,7 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
     let pass = Predict::<BODIES> {
         dt: state.dt,
         beta: solve.beta,
+        tension_limit: params.tension_limit(),
         free_velocities,
         solid_gradients,
         iterates,
@@ -70,10 +72,10 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
             let (mut impulses, mut squares) = (Vec4::ZERO, Vec4::ZERO);
             for (free, predicted) in pass.free_velocities[first..].iter().zip(predicted) {
                 let impulse = free - predicted;
-                // A pressure of -1 marks a nozzle.
-                let positive = predicted.with_w(predicted.w.max(0.0));
+                let has_pressure = predicted.w != SolveState::NO_PRESSURE;
+                let value = if has_pressure { *predicted } else { predicted.with_w(0.0) };
                 impulses += impulse * impulse;
-                squares += positive * positive;
+                squares += value * value;
             }
             let total = |v: Vec4| v.x + v.y + v.z;
             *sum = Vec4::new(total(impulses), squares.w, total(squares), 0.0);
@@ -84,6 +86,7 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
 struct Predict<'a, const BODIES: bool> {
     dt: f32,
     beta: f32,
+    tension_limit: f32,
     free_velocities: &'a [Vec4],
     solid_gradients: &'a [Vec4],
     iterates: &'a [Vec4],
@@ -94,7 +97,9 @@ struct Predict<'a, const BODIES: bool> {
 impl<const BODIES: bool> Predict<'_, BODIES> {
     #[inline(always)]
     fn pressure(&self, j: usize) -> f32 {
-        (self.iterates[j].x + self.beta * self.iterates[j].y).max(0.0)
+        let iterate = self.iterates[j];
+        let least = if iterate.x < 0.0 { -self.tension_limit } else { 0.0 };
+        (iterate.x + self.beta * iterate.y).max(least)
     }
 
     /// True where a nozzle determines the motion.
@@ -108,7 +113,7 @@ impl<const BODIES: bool> Predict<'_, BODIES> {
     fn finish(&self, i: usize, k: f32, sum: Vec3) -> Vec4 {
         let v = self.free_velocities[i].xyz();
         if self.is_driven(i) {
-            return v.extend(-1.0);
+            return v.extend(SolveState::NO_PRESSURE);
         }
         let solid = if BODIES { k * self.solid_gradients[i].xyz() } else { Vec3::ZERO };
         (v - self.dt * (sum + solid)).extend(k)

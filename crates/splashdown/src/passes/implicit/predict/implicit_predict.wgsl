@@ -15,7 +15,8 @@ override BODIES: u32 = 0u; // 1: bodies act on the fluid
 
 // The pressure for a result and the previous direction.
 fn pressure_of(iterate: vec2<f32>) -> f32 {
-    return max(iterate.x + solve.beta * iterate.y, 0.0);
+    let least = select(0.0, -tension_limit(), iterate.x < 0.0);
+    return max(iterate.x + solve.beta * iterate.y, least);
 }
 
 // A term of the sum over the neighbours; k is the sum of both pressures.
@@ -53,7 +54,7 @@ fn pressure_sum(i: u32, x: vec3<f32>, k: f32) -> vec3<f32> {
 fn update(i: u32) -> vec4<f32> {
     let v = free_velocities[i].xyz;
     if (free_velocities[i].w == 1.0) {
-        predicted[i] = vec4(v, -1.0);
+        predicted[i] = vec4(v, NO_PRESSURE);
         return vec4(0.0, 0.0, dot(v, v), 0.0);
     }
     let x = sorted_positions[i].xyz;

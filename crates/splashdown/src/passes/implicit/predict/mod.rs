@@ -2,8 +2,9 @@
 //!
 //! Also computes, over each 64 particles, the sums of the squares of dt D' k, k and u.
 //!
-//! k = max(k_J + beta p, 0) of a neighbour is computed where it is used. Where a nozzle determines the motion there is no
-//! pressure, which the result marks with -1.
+//! k = k_J + beta p of a neighbour is computed where it is used. It is at least zero, or the limit of the tension where k_J is
+//! negative. Where a nozzle determines the motion there is no pressure, which the result marks with
+//! [`SolveState::NO_PRESSURE`].
 
 mod cpu;
 

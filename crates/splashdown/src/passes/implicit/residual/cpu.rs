@@ -3,11 +3,14 @@ use rayon::prelude::*;
 use splashdown_gpu::Scratch;
 
 use super::super::{GROUP, GROUPS};
-use super::{LARGEST_COMPLETED, ResidualBindings, SMALLEST_SURFACE_GRADIENT};
+use super::{
+    LARGEST_COMPLETED, LARGEST_PULLED_DEFICIT, LARGEST_PULLED_GRADIENT, Limits, ResidualBindings,
+    SMALLEST_SURFACE_GRADIENT,
+};
 use crate::boundary::Images;
 use crate::kernel::Kernel;
 use crate::pairs::{Differences, NeighbourLists, Outputs, Sorted};
-use crate::state::Params;
+use crate::state::{Params, SolveState};
 
 /// Particles per task.
 const CHUNK: usize = 4096;
@@ -59,10 +62,12 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
     });
 
     scratch.get::<Points>().0 = points;
+    let (tension_limit, closing) = (params.tension_limit(), params.closing_rate() * state.dt);
+    let steepest = LARGEST_PULLED_GRADIENT / params.support_radius;
     let update = |i: usize, iterate: &mut Vec4| {
         let excess = iterate.w;
         let (u, k) = (predicted[i].xyz(), predicted[i].w);
-        if k < 0.0 {
+        if k == SolveState::NO_PRESSURE {
             *iterate = Vec3::ZERO.extend(excess);
             return Vec4::new(0.0, 0.0, excess.max(0.0), 0.0);
         }
@@ -74,15 +79,23 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
             normal += 0.5 * solid.xyz();
         }
         let complete = excess + missing_density(params, normal).min((LARGEST_COMPLETED - excess).max(0.0));
-        let residual = complete + state.dt * rate - params.compressibility * k;
+        let change_of_density = state.dt * rate - params.compressibility * k;
+        let is_inside = tension_limit > 0.0
+            && complete > -LARGEST_PULLED_DEFICIT
+            && normal.length_squared() < steepest * steepest
+            && (!BODIES || solid_gradients[i] == Vec4::ZERO);
+        let limits =
+            if is_inside { Limits::inside(tension_limit, closing, complete) } else { Limits::of(complete) };
+        let residual = limits.residual(k, change_of_density);
         let diagonal = (gradient.length_squared() + stiffness[i].w).max(1e-6 * scale * scale);
         let diagonal = state.dt * state.dt * diagonal + params.compressibility;
-        let next = (k + solve.relaxation * residual / diagonal).max(0.0);
+        let next = limits.next(k, change_of_density, solve.relaxation, diagonal);
         let change = next - k;
         let direction = solve.beta * iterate.y + iterate.z;
         *iterate = Vec4::new(next, direction, change, excess);
-        let error = if k > 0.0 { residual.abs() } else { residual.max(0.0) };
-        Vec4::new(error, diagonal * change * change, excess.max(0.0), k * residual)
+        let error = limits.error(k, residual, diagonal);
+        let work = if error > 0.0 { k * residual } else { 0.0 };
+        Vec4::new(error, diagonal * change * change, excess.max(0.0), work)
     };
     let tasks = iterates[..n].par_chunks_mut(GROUP * GROUPS).zip(residuals.par_chunks_mut(GROUPS));
     tasks.enumerate().for_each(|(task, (iterates, sums))| {

@@ -16,6 +16,41 @@ override BODIES: u32 = 0u; // 1: bodies contribute to the density
 // See the module.
 const SMALLEST_SURFACE_GRADIENT: f32 = 0.3;
 const LARGEST_COMPLETED: f32 = 0.02;
+const LARGEST_PULLED_GRADIENT: f32 = 0.7;
+const LARGEST_PULLED_DEFICIT: f32 = 0.3;
+const LARGEST_HELD: f32 = 0.02;
+
+// See limits.rs.
+struct Limits {
+    least: f32,
+    pushed: f32,
+    pulled: f32,
+}
+
+fn limits_inside(excess: f32) -> Limits {
+    let closed = max(state.dt * closing_rate() * excess, excess);
+    let is_thin = excess < 0.0;
+    return Limits(
+        -tension_limit(),
+        select(excess, min(closed, excess + LARGEST_HELD), is_thin),
+        select(excess, closed, is_thin),
+    );
+}
+
+fn residual_of(limits: Limits, k: f32, change: f32) -> f32 {
+    let pushed = limits.pushed + change;
+    let pulled = limits.pulled + change;
+    if (k > 0.0 || (k == 0.0 && pushed > 0.0)) {
+        return pushed;
+    }
+    return select(0.0, pulled, k < 0.0 || pulled < 0.0);
+}
+
+fn next_pressure(limits: Limits, k: f32, change: f32, diagonal: f32) -> f32 {
+    let positive = k + solve.relaxation * (limits.pushed + change) / diagonal;
+    let other = max(min(k + solve.relaxation * (limits.pulled + change) / diagonal, 0.0), limits.least);
+    return select(other, positive, positive > 0.0);
+}
 
 // A term of the sum over the neighbours, for the velocities of the particle and of its neighbour.
 fn term_of(entry: u32, x: vec3<f32>, position: vec3<f32>, u: vec3<f32>, other: vec3<f32>) -> f32 {
@@ -59,30 +94,40 @@ fn update(i: u32) -> vec4<f32> {
     let excess = iterates[i].w;
     let u = predicted[i].xyz;
     let k = predicted[i].w;
-    if (k < 0.0) {
+    if (k == NO_PRESSURE) {
         iterates[i] = vec4(vec3(0.0), excess);
         return vec4(0.0, 0.0, max(excess, 0.0), 0.0);
     }
     var rate = rate_of(i, sorted_positions[i].xyz, u);
     var gradient = stiffness[i].xyz;
     var normal = gradient;
+    var is_free = true; // not next to a body
     if (BODIES == 1u) {
         let solid = solid_gradients[i];
         rate += dot(solid.xyz, u) - solid.w;
         gradient += solid.xyz;
         normal += 0.5 * solid.xyz;
+        is_free = all(solid == vec4(0.0));
     }
     let complete = excess + min(missing_density(normal), max(LARGEST_COMPLETED - excess, 0.0));
-    let residual = complete + state.dt * rate - params.compressibility * k;
+    let is_inside = tension_limit() > 0.0 && complete > -LARGEST_PULLED_DEFICIT && is_free
+        && params.support_radius * length(normal) < LARGEST_PULLED_GRADIENT;
+    var limits = Limits(0.0, complete, complete);
+    if (is_inside) {
+        limits = limits_inside(complete);
+    }
+    let change_of_density = state.dt * rate - params.compressibility * k;
+    let residual = residual_of(limits, k, change_of_density);
     let scale = 1.0 / params.support_radius;
     let squares = max(dot(gradient, gradient) + stiffness[i].w, 1e-6 * scale * scale);
     let diagonal = state.dt * state.dt * squares + params.compressibility;
-    let next = max(k + solve.relaxation * residual / diagonal, 0.0);
+    let next = next_pressure(limits, k, change_of_density, diagonal);
     let change = next - k;
     let direction = solve.beta * iterates[i].y + iterates[i].z;
     iterates[i] = vec4(next, direction, change, excess);
-    let error = select(max(residual, 0.0), abs(residual), k > 0.0);
-    return vec4(error, diagonal * change * change, max(excess, 0.0), k * residual);
+    let error = select(max(residual, diagonal * (limits.least - k)), abs(residual), k > limits.least);
+    let work = select(0.0, k * residual, error > 0.0);
+    return vec4(error, diagonal * change * change, max(excess, 0.0), work);
 }
 
 @compute @workgroup_size(64)

@@ -22,8 +22,30 @@
 //! The forces are those of the sum alone. If the area of the surface grows, so does the sum of what is added, and the pressure
 //! k at the surface does the work k times the change. At a surface without tension k is small. With `csf` it is not, and the
 //! force of the tension is larger for it (`CSF_PER_SIGMA` in `schemes/dfsph`). With the model of Akinci et al. c is zero.
+//!
+//! # Tension
+//! Inside the fluid the pressure may be negative, down to the weight of water two spacings high: k >= -2 |g| spacing. A jet
+//! that falls then contracts as it gets faster. Without tension it keeps its width, and its density falls.
+//!
+//! The limit is small because particles under tension attract each other. A particle is inside the fluid if H |g| is below
+//! 0.7, its density is above 0.7 rho0, and it is not next to a body: water that adheres to light bodies would hold them. There
+//! is no tension without gravity, which gives the limit its measure, none with a model of surface tension, and none with an
+//! implicit viscosity, where it would have to be far above the limit.
+//!
+//! A deficit e of density inside the fluid closes at a rate of sqrt(2 |g| / spacing), the speed after a fall through one spacing
+//! per spacing. With c = dt sqrt(2 |g| / spacing), it is replaced by
+//!
+//! ```text
+//! c e                        in the residual of a pressure k < 0
+//! min(c e, e + 0.02)         in the residual of a pressure k > 0
+//! ```
+//!
+//! If k is zero and neither residual asks for a pressure of its sign, it stays zero. Tension that closes a deficit in one step
+//! makes particles clump. With the second line the pressure does not follow the noise of the density, and larger deficits, in
+//! spray that falls together, close freely.
 
 mod cpu;
+mod limits;
 
 use glam::{UVec4, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
@@ -34,6 +56,7 @@ use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::passes::group_sum;
 use crate::passes::neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 use crate::state::{PARAMS, Params, SOLVE, STATE, SolveState, StepState};
+use limits::Limits;
 
 const IMPORTS: &[WgslModule] = &[
     wgsl::INDEX,
@@ -54,6 +77,13 @@ const IMPORTS: &[WgslModule] = &[
 pub(crate) const SMALLEST_SURFACE_GRADIENT: f32 = 0.3;
 /// The largest excess of density to which the addition at the free surface leads.
 const LARGEST_COMPLETED: f32 = 0.02;
+/// Particles with a larger gradient of the sum of V W, times the support radius, cannot be under tension. That of the uppermost
+/// layer of a lattice is 0.98.
+const LARGEST_PULLED_GRADIENT: f32 = 0.7;
+/// Particles with a larger deficit of density cannot be under tension: they belong to spray.
+const LARGEST_PULLED_DEFICIT: f32 = 0.3;
+/// Larger deficits close freely at a pressure above zero.
+const LARGEST_HELD: f32 = 0.02;
 
 bindings! {
     /// The buffers of `implicit_residual.wgsl`.
