@@ -110,6 +110,6 @@ fn after_a_step(spacing: &str, executor: &mut Executor) -> Result<(u32, BufferSe
     step.append(&state::end_step::record(&fields));
     executor.run(&step)?;
     // The passes of the iterations do nothing once the solver has stopped.
-    executor.write(fields.solve, &[SolveState::new(false, params.relaxation)])?;
+    executor.write(fields.solve, &[SolveState::new(false, params.relaxation, 1.0)])?;
     Ok((n, fields.buffers().and(&cells.buffers())))
 }

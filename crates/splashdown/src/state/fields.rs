@@ -177,7 +177,7 @@ impl Fields {
             shifts: executor.create("shifts", some(extras.corrections, n))?,
             boundary_matrices: executor.create("boundary_matrices", some(extras.boundary_matrices, 2 * n))?,
             neighbours: executor.create("neighbours", some(lists > 0, lists * n))?,
-            solve: executor.create_small("solve", &[SolveState::new(true, 0.0)])?,
+            solve: executor.create_small("solve", &[SolveState::new(true, 0.0, 1.0)])?,
             stiffness: executor.create("stiffness", some(extras.implicit, n))?,
             iterates: executor.create("iterates", some(extras.implicit, n))?,
             free_velocities: executor.create("free_velocities", some(extras.implicit, n))?,

@@ -26,12 +26,12 @@ gpu_struct! {
         scale: f32,
         /// Part of the new pressure in the pressure with which the next step starts.
         renewal: f32,
+        /// Length of the step over that of the longest one without the limit by the pressure; at most 1.
+        dt_ratio: f32,
         /// Padding.
         unused: f32,
         /// Padding.
         unused_2: f32,
-        /// Padding.
-        unused_3: f32,
     }
 }
 
@@ -39,8 +39,8 @@ impl SolveState {
     /// Marks a particle whose motion a nozzle determines, instead of a pressure.
     pub const NO_PRESSURE: f32 = -1e30;
 
-    /// The state at the beginning of a step, with the relaxation of the Jacobi map.
-    pub fn new(is_stopped: bool, relaxation: f32) -> Self {
+    /// The state at the beginning of a step, with the relaxation of the Jacobi map and the relative length of the step.
+    pub fn new(is_stopped: bool, relaxation: f32, dt_ratio: f32) -> Self {
         Self {
             stopped: u32::from(is_stopped),
             iteration: 0,
@@ -51,9 +51,9 @@ impl SolveState {
             warm_start: 1.0,
             scale: 1.0,
             renewal: 1.0,
+            dt_ratio,
             unused: 0.0,
             unused_2: 0.0,
-            unused_3: 0.0,
         }
     }
 }

@@ -9,9 +9,9 @@ struct SolveState {
     warm_start: f32,
     scale: f32,
     renewal: f32,
+    dt_ratio: f32,
     unused: f32,
     unused_2: f32,
-    unused_3: f32,
 }
 
 // Marks a particle whose motion a nozzle determines, instead of a pressure.

@@ -71,9 +71,9 @@ fn solving() -> SolveState {
         warm_start: 1.0,
         scale: 1.0,
         renewal: 1.0,
+        dt_ratio: 0.4,
         unused: 0.0,
         unused_2: 0.0,
-        unused_3: 0.0,
     }
 }
 
@@ -328,6 +328,8 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         vectors(n, 12).iter().enumerate().map(|(i, v)| v.with_w(excess(i, v.w))).collect();
     // Particles that may be under tension, and those among them with a deficit.
     let mut inside = [0, 0];
+    // Particles with an excess that the step does not remove.
+    let mut larger = 0;
     let label = format!("implicit.residual.{word}{}", suffix(bodies));
     let mut iterates = Output::new("iterates", Data::Vec4(before.clone()));
     let mut residuals = Output::new("residuals", poisoned(n.div_ceil(64)));
@@ -361,7 +363,11 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         }
         let steepness = (c.support * normal.length() - 0.3).max(0.0);
         let missing = f64::from(world.params.surface_completion) * steepness.powf(1.5);
-        let complete = excess.max((excess + missing).min(0.02));
+        let dt_ratio = f64::from(solve.dt_ratio);
+        let least = 0.002_f64.max(2.0 * f64::from(world.params.tolerance));
+        let removed = excess.min(least + 0.05 * dt_ratio * dt_ratio);
+        larger += usize::from(removed < excess);
+        let complete = removed + missing.min((0.02 * dt_ratio - excess).max(0.0));
         let compressibility = f64::from(world.params.compressibility);
         let is_inside = limit > 0.0
             && complete > -0.3
@@ -408,6 +414,7 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         (0..4).for_each(|k| residuals.push(values[k], sizes[k]));
     }
     let some = if limit > 0.0 { 20 } else { 0 };
+    assert!(larger > 20, "{label}, {name}: {larger} with a large excess");
     assert!(inside[0] >= 2 * some && inside[1] >= some, "{label}, {name}: {inside:?} inside");
     let mut input = base(&world);
     input.extend([
@@ -439,8 +446,12 @@ fn begin(name: &str, run_count: u32) -> Case {
     let mut solve = Output::new("solve", Data::Solve(solving()).poison());
     let mut iterates = Output::new("iterates", poisoned(n));
     let mut free_velocities = Output::new("free_velocities", poisoned(n));
-    let expected = Data::Solve(SolveState::new(run_count == 0, 0.3));
-    wide(expected.floats()).into_iter().for_each(|value| solve.push(value, 0.0));
+    let longest = world.params.longest_step(world.state.max_speed, 0.0, 0.0);
+    let expected = SolveState::new(run_count == 0, 0.3, world.state.dt / longest);
+    // Only the division may be rounded differently.
+    wide(Data::Solve(expected).floats())
+        .into_iter()
+        .for_each(|value| solve.push(value, if value == f64::from(expected.dt_ratio) { 1.0 } else { 0.0 }));
     for i in 0..world.active() {
         iterates.push(pressures[i].into(), 0.0);
         (0..2).for_each(|_| iterates.push(0.0, 0.0));

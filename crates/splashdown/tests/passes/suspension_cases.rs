@@ -70,7 +70,7 @@ fn step(done: u32) -> StepState {
 }
 
 fn solvers([pressure, viscosity]: [u32; 2]) -> [Data; 2] {
-    let mut solve = SolveState::new(false, 0.5);
+    let mut solve = SolveState::new(false, 0.5, 1.0);
     solve.stopped = pressure;
     let mut viscous = ViscousState::new(false);
     viscous.stopped = viscosity;

@@ -1,4 +1,5 @@
-//! `dfsph`: a block that collapses in a closed box, deep water, a drop that falls on a wide pool, and a tank at rest.
+//! `dfsph`: a block that collapses in a closed box, deep water, a drop that falls on a wide pool, a layer that falls flat on a
+//! floor, and a tank at rest.
 
 use splashdown::{Device, Event, Run, RunOptions, Simulation, SimulationError, Stats, sample};
 
@@ -27,13 +28,19 @@ static IMPACT: Case = Case {
     sizes: &[5],
     variants: &[Variant::new("dfsph", "")],
 };
+static FLAT: Case = Case {
+    name: "implicit pressure, flat impact",
+    across: "layer",
+    sizes: &[10, 16, 20],
+    variants: &[Variant::new("dfsph", "")],
+};
 static TANK: Case = Case {
     name: "implicit pressure, tank at rest",
     across: "depth",
     sizes: &[10],
     variants: &[Variant::new("dfsph", "")],
 };
-pub const CASES: &[&Case] = &[&COLLAPSE, &DEEP, &IMPACT, &TANK];
+pub const CASES: &[&Case] = &[&COLLAPSE, &DEEP, &IMPACT, &FLAT, &TANK];
 
 /// The block of the study of the solver, at a quarter of its lengths.
 fn collapse(keys: &str) -> Simulation {
@@ -185,6 +192,51 @@ fn a_small_impact_in_a_wide_pool_does_not_compress_the_water() {
     // Control: a larger tolerance is detected.
     figures.measure("the same with a tolerance of 0.005", excess_of_an_impact("tolerance = 0.005"));
     figures.close();
+}
+
+/// A layer of water, 0.2 m thick and this many spacings, that falls 1 m to the floor of a closed box: the largest rise of the
+/// energy over its smallest earlier value and its final value, over the initial one.
+fn flat_impact(spacings: u32, method: &str) -> [f64; 2] {
+    let scene = scene(&format!(
+        r#"
+        [scene]
+        name = "box"
+        duration = 0.55
+        [domain]
+        min = [0, 0, 0]
+        max = [0.4, 1.2, 0.4]
+        [fluid]
+        particle_spacing = {}
+        [[fluid.block]]
+        position = [0, 1.0, 0]
+        size = [0.4, 0.2, 0.4]
+        [solver]
+        method = "{method}"
+        "#,
+        0.2 / f64::from(spacings)
+    ));
+    let mut simulation = Simulation::with_executor(&scene, executor()).unwrap();
+    let start = energy(&mut simulation);
+    let (mut least, mut rise, mut now) = (start, 0.0_f64, start);
+    for _ in 0..110 {
+        simulation.advance(0.005).unwrap();
+        now = energy(&mut simulation);
+        rise = rise.max((now - least) / start);
+        least = least.min(now);
+    }
+    [rise, now / start]
+}
+
+/// The whole layer stops at once, and loses its energy. The density at its lower side is not linear over the length of a step.
+#[test]
+fn a_flat_impact_gains_no_energy() {
+    FLAT.run(|_, spacings, figures| {
+        let [rise, left] = flat_impact(spacings, "dfsph");
+        figures.measure("rise of the energy over the initial energy", rise);
+        figures.measure("energy left", left);
+        // Control: a compressible layer bounces.
+        figures.measure("energy left with wcsph", flat_impact(spacings, "wcsph")[1]);
+    });
 }
 
 #[test]

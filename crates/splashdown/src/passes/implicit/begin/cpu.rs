@@ -22,7 +22,9 @@ pub(super) fn begin(buffers: BeginBindings<'_>) {
         free_velocities,
     } = buffers;
     if state.done != StepState::SUSPENDED {
-        *solve = SolveState::new(state.run_count == 0, params.relaxation);
+        let longest = params.longest_step(state.max_speed.max(state.body_speed), 0.0, 0.0);
+        let dt_ratio = (state.dt / longest).min(1.0);
+        *solve = SolveState::new(state.run_count == 0, params.relaxation, dt_ratio);
     }
     let active = cell_start[grid.cell_count as usize] as usize;
     let chunks =

@@ -16,9 +16,10 @@ fn reset() {
     solve.warm_start = 1.0;
     solve.scale = 1.0;
     solve.renewal = 1.0;
+    let longest = longest_step(max(state.max_speed, state.body_speed), 0.0, 0.0);
+    solve.dt_ratio = min(state.dt / longest, 1.0);
     solve.unused = 0.0;
     solve.unused_2 = 0.0;
-    solve.unused_3 = 0.0;
 }
 
 @compute @workgroup_size(64)

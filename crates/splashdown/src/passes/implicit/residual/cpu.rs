@@ -5,7 +5,7 @@ use splashdown_gpu::Scratch;
 use super::super::{GROUP, GROUPS};
 use super::{
     LARGEST_COMPLETED, LARGEST_PULLED_DEFICIT, LARGEST_PULLED_GRADIENT, Limits, ResidualBindings,
-    SMALLEST_SURFACE_GRADIENT,
+    SMALLEST_SURFACE_GRADIENT, limits,
 };
 use crate::boundary::Images;
 use crate::kernel::Kernel;
@@ -78,7 +78,9 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
             gradient += solid.xyz();
             normal += 0.5 * solid.xyz();
         }
-        let complete = excess + missing_density(params, normal).min((LARGEST_COMPLETED - excess).max(0.0));
+        let most = LARGEST_COMPLETED * solve.dt_ratio;
+        let complete = limits::removed(excess, params.tolerance, solve.dt_ratio)
+            + missing_density(params, normal).min((most - excess).max(0.0));
         let change_of_density = state.dt * rate - params.compressibility * k;
         let is_inside = tension_limit > 0.0
             && complete > -LARGEST_PULLED_DEFICIT

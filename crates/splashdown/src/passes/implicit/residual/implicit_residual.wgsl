@@ -19,12 +19,19 @@ const LARGEST_COMPLETED: f32 = 0.02;
 const LARGEST_PULLED_GRADIENT: f32 = 0.7;
 const LARGEST_PULLED_DEFICIT: f32 = 0.3;
 const LARGEST_HELD: f32 = 0.02;
+const LARGEST_REMOVED: f32 = 0.05;
+const LEAST_REMOVED: f32 = 0.002;
 
 // See limits.rs.
 struct Limits {
     least: f32,
     pushed: f32,
     pulled: f32,
+}
+
+fn removed(excess: f32) -> f32 {
+    let most = max(LEAST_REMOVED, 2.0 * params.tolerance) + LARGEST_REMOVED * solve.dt_ratio * solve.dt_ratio;
+    return min(excess, most);
 }
 
 fn limits_inside(excess: f32) -> Limits {
@@ -109,7 +116,7 @@ fn update(i: u32) -> vec4<f32> {
         normal += 0.5 * solid.xyz;
         is_free = all(solid == vec4(0.0));
     }
-    let complete = excess + min(missing_density(normal), max(LARGEST_COMPLETED - excess, 0.0));
+    let complete = removed(excess) + min(missing_density(normal), max(LARGEST_COMPLETED * solve.dt_ratio - excess, 0.0));
     let is_inside = tension_limit() > 0.0 && complete > -LARGEST_PULLED_DEFICIT && is_free
         && params.support_radius * length(normal) < LARGEST_PULLED_GRADIENT;
     var limits = Limits(0.0, complete, complete);

@@ -1,6 +1,6 @@
 //! The range of the implicit pressure of a particle, and its residual there (see the [module](super)).
 
-use super::LARGEST_HELD;
+use super::{LARGEST_HELD, LARGEST_REMOVED, LEAST_REMOVED};
 
 /// What determines the residual of a particle, besides the change of its density in the step.
 #[derive(Clone, Copy)]
@@ -11,6 +11,12 @@ pub(super) struct Limits {
     pushed: f32,
     /// The excess of density that a pressure below zero takes away.
     pulled: f32,
+}
+
+/// The part of an excess of density that a step removes, for its length over that of the longest step; a deficit is unchanged.
+#[inline(always)]
+pub(super) fn removed(excess: f32, tolerance: f32, dt_ratio: f32) -> f32 {
+    excess.min(LEAST_REMOVED.max(2.0 * tolerance) + LARGEST_REMOVED * dt_ratio * dt_ratio)
 }
 
 impl Limits {
@@ -91,6 +97,16 @@ mod tests {
         assert!((next(0.0, -0.5) + 0.1275).abs() < 1e-6, "tension, with the closing part");
         assert_eq!(next(0.5, -10.0), -1.0, "the limit");
         assert_eq!(Limits::of(0.0).next(-0.5, -2.0, 0.5, 2.0), 0.0, "of a particle that came to the surface");
+    }
+
+    #[test]
+    fn a_short_step_removes_less_of_a_large_excess() {
+        assert_eq!(removed(0.05, 0.001, 1.0), 0.05);
+        assert!((removed(0.1, 0.001, 1.0) - 0.052).abs() < 1e-6);
+        assert!((removed(0.1, 0.001, 0.2) - 0.004).abs() < 1e-6);
+        assert_eq!(removed(0.002, 0.0001, 0.0), 0.002);
+        assert_eq!(removed(0.02, 0.01, 0.0), 0.02, "the test of the residual must see it");
+        assert_eq!(removed(-0.1, 0.001, 0.2), -0.1);
     }
 
     #[test]

@@ -16,12 +16,25 @@
 //!
 //! c gives the uppermost layer of a lattice the rest density. The gradients of disordered particles inside the fluid are
 //! smaller than 0.3 / H, and those of an isolated particle and of a sheet of one layer are zero. The addition leads to an
-//! excess of at most 2 %: a surface that is denser than that of a lattice, after a splash or in imported particles, must
-//! spread over several steps and not burst in one. The mean excess that is reported does not contain the addition.
+//! excess of at most 2 % dt / dt_max (see below): a surface that is denser than that of a lattice, after a splash or in imported
+//! particles, must spread over several steps and not burst in one. The mean excess that is reported does not contain the addition.
 //!
 //! The forces are those of the sum alone. If the area of the surface grows, so does the sum of what is added, and the pressure
 //! k at the surface does the work k times the change. At a surface without tension k is small. With `csf` it is not, and the
 //! force of the tension is larger for it (`CSF_PER_SIGMA` in `schemes/dfsph`). With the model of Akinci et al. c is zero.
+//!
+//! # Large excesses
+//! The density is not linear in the displacement, so that an impact over a third of a spacing leaves excesses of up to 40 %.
+//! The step after it is short, because the pressure is large. If it removed the whole excess of a layer, all water above would
+//! be displaced by up to 0.4 spacings in this short time, at several times the speed of the impact. A step therefore removes
+//!
+//! ```text
+//! min(e, max(0.002, 2 tolerance) + 0.05 (dt / dt_max)^2)
+//! ```
+//!
+//! of an excess e, where dt_max is the longest step without the limit by the pressure. With the square, a layer under an
+//! excess gets the same acceleration in short steps as in long ones. Up to twice the tolerance is always removed, so that the test
+//! of the residual sees it.
 //!
 //! # Tension
 //! Inside the fluid the pressure may be negative, down to the weight of water two spacings high: k >= -2 |g| spacing. A jet
@@ -84,6 +97,10 @@ const LARGEST_PULLED_GRADIENT: f32 = 0.7;
 const LARGEST_PULLED_DEFICIT: f32 = 0.3;
 /// Larger deficits close freely at a pressure above zero.
 const LARGEST_HELD: f32 = 0.02;
+/// The largest excess of density that the longest step removes.
+const LARGEST_REMOVED: f32 = 0.05;
+/// The excess of density that every step removes.
+const LEAST_REMOVED: f32 = 0.002;
 
 bindings! {
     /// The buffers of `implicit_residual.wgsl`.
