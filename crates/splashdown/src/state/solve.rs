@@ -26,7 +26,7 @@ gpu_struct! {
         scale: f32,
         /// Part of the new pressure in the pressure with which the next step starts.
         renewal: f32,
-        /// Length of the step over that of the longest one without the limit by the pressure; at most 1.
+        /// Length of the step over that of the longest one without the limits by the pressure and by the frame; at most 1.
         dt_ratio: f32,
         /// Padding.
         unused: f32,

@@ -198,7 +198,7 @@ fn the_gpu_can_continue_from_any_pass() {
         ("method = \"wcsph\"", 1e-6),
         ("method = \"wcsph\"\ndensity = \"continuity\"", 1e-6),
         ("method = \"wcsph\"\nsurface_tension = \"akinci2013\"", 1e-6),
-        // The step has the largest length, so that it removes the whole excess of density.
+        // The step has the largest length. A shorter one removes too little of the excess of density for a pressure.
         ("method = \"dfsph\"\nmax_dt = 2e-4", 1e-6),
         // Implicit.
         ("method = \"dfsph\"\nmax_dt = 2e-4", 1.0),

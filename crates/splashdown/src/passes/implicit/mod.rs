@@ -8,10 +8,11 @@
 //! (D u)_i  = sum_j g_ij . (u_i - u_j) + b_i . (u_i - u_body)      rate of the density
 //! (D' k)_i = sum_j (k_i + k_j) g_ij + k_i b_i                      minus the acceleration by pressure
 //! u        = v* - dt D' k                                          v*: the velocity by all other forces
-//! r        = (delta - 1) + s + dt D u - k / c^2   the excess of density at the end of the step, less the compression
+//! r        = e + s + dt D u - k / c^2             the excess of density at the end of the step, less the compression
 //! ```
 //!
-//! s completes the density at the free surface ([`residual`]); forces and diagonal do not contain its derivative.
+//! e is delta - 1, or the part of it that a step removes if it is large, and s completes the density at the free surface
+//! ([`residual`]); forces and diagonal do not contain its derivative.
 //!
 //! The solution has k >= 0, r <= 0 and k r = 0. Inside the fluid it may be a small tension, which closes a deficit of density
 //! slowly: [`residual`] states its limits. An image has the pressure of its particle and reflects its velocity; a body
@@ -27,7 +28,7 @@
 //!
 //! ```text
 //! predict    k = max(k_J + beta p, 0);  u = v* - dt D' k
-//! residual   p = beta p + g;  r = (delta - 1) + dt D u - k / c^2;  k_J = max(k + w r / a, 0);  g = k_J - k
+//! residual   p = beta p + g;  r = e + s + dt D u - k / c^2;  k_J = max(k + w r / a, 0);  g = k_J - k
 //! decide     stop if mean |r| <= tolerance, and <= 5 tolerance in each group, where r counts if it is positive or k is;
 //!            beta = sum a g^2 / (the previous sum), or 0 in the first iteration and if the sum has grown
 //! ```

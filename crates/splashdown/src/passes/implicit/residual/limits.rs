@@ -105,7 +105,7 @@ mod tests {
         assert!((removed(0.1, 0.001, 1.0) - 0.052).abs() < 1e-6);
         assert!((removed(0.1, 0.001, 0.2) - 0.004).abs() < 1e-6);
         assert_eq!(removed(0.002, 0.0001, 0.0), 0.002);
-        assert_eq!(removed(0.02, 0.01, 0.0), 0.02, "the test of the residual must see it");
+        assert_eq!(removed(0.02, 0.01, 0.0), 0.02, "the mean residual must see it");
         assert_eq!(removed(-0.1, 0.001, 0.2), -0.1);
     }
 

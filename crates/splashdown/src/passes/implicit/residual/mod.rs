@@ -24,17 +24,17 @@
 //! force of the tension is larger for it (`CSF_PER_SIGMA` in `schemes/dfsph`). With the model of Akinci et al. c is zero.
 //!
 //! # Large excesses
-//! The density is not linear in the displacement, so that an impact over a third of a spacing leaves excesses of up to 40 %.
-//! The step after it is short, because the pressure is large. If it removed the whole excess of a layer, all water above would
-//! be displaced by up to 0.4 spacings in this short time, at several times the speed of the impact. A step therefore removes
+//! The density is not linear in the displacement, so that the step of an impact leaves excesses of up to 40 %. The step after it
+//! is short, because the pressure is large. If it removed the whole excess of a layer, all water above would be displaced by
+//! up to 0.4 spacings in this short time, at several times the speed of the impact. A step therefore removes
 //!
 //! ```text
 //! min(e, max(0.002, 2 tolerance) + 0.05 (dt / dt_max)^2)
 //! ```
 //!
-//! of an excess e, where dt_max is the longest step without the limit by the pressure. With the square, a layer under an
-//! excess gets the same acceleration in short steps as in long ones. Up to twice the tolerance is always removed, so that the test
-//! of the residual sees it.
+//! of an excess e, where dt_max is the longest step without the limits by the pressure and by the frame. With the square, the
+//! acceleration of a layer over an excess does not depend on the length of the step, except for the first part. That part is
+//! larger than the tolerance, so that the mean residual sees it.
 //!
 //! # Tension
 //! Inside the fluid the pressure may be negative, down to the weight of water two spacings high: k >= -2 |g| spacing. A jet
@@ -88,7 +88,7 @@ const IMPORTS: &[WgslModule] = &[
 
 /// Particles with a smaller gradient of the sum of V W, times the support radius, are not at the free surface.
 pub(crate) const SMALLEST_SURFACE_GRADIENT: f32 = 0.3;
-/// The largest excess of density to which the addition at the free surface leads.
+/// The largest excess of density to which the addition at the free surface leads in the longest step.
 const LARGEST_COMPLETED: f32 = 0.02;
 /// Particles with a larger gradient of the sum of V W, times the support radius, cannot be under tension. That of the uppermost
 /// layer of a lattice is 0.98.
@@ -97,9 +97,9 @@ const LARGEST_PULLED_GRADIENT: f32 = 0.7;
 const LARGEST_PULLED_DEFICIT: f32 = 0.3;
 /// Larger deficits close freely at a pressure above zero.
 const LARGEST_HELD: f32 = 0.02;
-/// The largest excess of density that the longest step removes.
+/// The largest excess of density that the longest step removes besides [`LEAST_REMOVED`].
 const LARGEST_REMOVED: f32 = 0.05;
-/// The excess of density that every step removes.
+/// The excess of density that every step removes; twice the tolerance, if that is larger.
 const LEAST_REMOVED: f32 = 0.002;
 
 bindings! {
