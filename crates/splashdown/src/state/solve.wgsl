@@ -10,8 +10,8 @@ struct SolveState {
     scale: f32,
     renewal: f32,
     dt_ratio: f32,
+    shortened: f32,
     unused: f32,
-    unused_2: f32,
 }
 
 // Marks a particle whose motion a nozzle determines, instead of a pressure.

@@ -11,6 +11,8 @@ mod flow_cases;
 mod foam_cases;
 mod harness;
 mod implicit_cases;
+mod implicit_step_cases;
+mod iterative;
 mod mouse_force_cases;
 mod neighbour_cases;
 mod neighbour_lists;
@@ -39,6 +41,7 @@ fn all_cases() -> Vec<Case> {
         neighbour_cases::cases(),
         tension_force_cases::cases(),
         implicit_cases::cases(),
+        implicit_step_cases::cases(),
         viscous_cases::cases(),
         suspension_cases::cases(),
         flow_cases::cases(),

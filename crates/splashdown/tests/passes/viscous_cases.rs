@@ -6,15 +6,9 @@ use glam::{DVec3, Vec4, Vec4Swizzles};
 use splashdown::state::{Params, StepCounters, ViscousState};
 
 use super::harness::{Case, Data, wide};
-use super::implicit_cases::{Output, base, case, lists, poisoned, signed, vectors, world};
+use super::iterative::{KERNELS, Output, base, case, lists, poisoned, signed, suffix, vectors, world};
 use super::oracle::{Kernel, constants, neighbours, speed};
 use super::world::{World, params};
-
-const KERNELS: [(Kernel, &str); 3] = [
-    (Kernel::WendlandC2, "wendland_c2"),
-    (Kernel::WendlandBlend, "wendland_blend"),
-    (Kernel::CubicSpline, "cubic_spline"),
-];
 
 pub fn cases() -> Vec<Case> {
     let open = Params { closed: 0b110111, wall_friction: 0.3, ..params(2.5) };
@@ -102,10 +96,6 @@ pub fn strength(world: &World) -> f64 {
 /// A factor of the sums that is wrong by 1/200.
 fn thicker(input: &mut [Data]) {
     input[0].params().viscous_factor *= 1.005;
-}
-
-fn suffix(bodies: bool) -> &'static str {
-    if bodies { ".bodies" } else { "" }
 }
 
 fn start(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool) -> Case {

@@ -5,7 +5,7 @@ use splashdown::passes::viscous;
 use splashdown::state::{Params, StepCounters, ViscousState};
 use splashdown_gpu::{BufferSet, DispatchSize, Executor, Flag, Recording, Rounds, testing};
 
-use super::implicit_cases::vectors;
+use super::iterative::vectors;
 use super::neighbour_lists;
 use super::oracle::{place, speed};
 use super::viscous_cases::{force, strength};

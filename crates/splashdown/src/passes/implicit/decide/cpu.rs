@@ -1,7 +1,7 @@
 use glam::Vec4;
 
 use super::super::{GROUP, LARGEST_IN_GROUP};
-use super::DecideBindings;
+use super::{DecideBindings, LARGEST_STOP, LEAST_PART};
 use crate::state::{Params, StepCounters};
 
 pub(super) fn decide(buffers: DecideBindings<'_>) {
@@ -32,9 +32,13 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
         let work = impulse.x + params.compressibility * impulse.y;
         let scale = 1.0 + total.w / work.max(1e-30);
         solve.scale = scale.clamp(0.5, 1.1);
-        let moved = state.max_speed * state.dt / params.particle_spacing;
+        let fastest = state.max_speed * state.dt / params.particle_spacing;
         let late = strictness * (solve.iteration as f32 - 3.0) / 8.0;
-        solve.renewal = if params.implicit_viscosity > 0.0 { 1.0 } else { moved.max(late).clamp(0.02, 1.0) };
+        solve.renewal =
+            if params.implicit_viscosity > 0.0 { 1.0 } else { fastest.max(late).clamp(0.02, 1.0) };
+        let moved = (impulse.x / n).sqrt() * state.dt / params.particle_spacing;
+        solve.shortened = (LARGEST_STOP / moved.max(1e-30)).clamp(LEAST_PART, 1.0);
+        state.dt *= solve.shortened;
         if !has_converged {
             solve.warm_start = 0.5;
             counters[StepCounters::UNCONVERGED] += 1;

@@ -8,6 +8,8 @@
 
 const GROUP: f32 = 64.0; // particles per sum
 const LARGEST_IN_GROUP: f32 = 5.0; // the mean residual of a group may be this many times the tolerance
+const LARGEST_STOP: f32 = 0.05; // see decide/mod.rs
+const LEAST_PART: f32 = 0.1;
 
 var<workgroup> sums: array<vec4<f32>, 256>;
 var<workgroup> impulse_sums: array<vec4<f32>, 256>;
@@ -43,10 +45,13 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, worst: f32, n: f32) {
         solve.stopped = 1u;
         let work = impulse.x + params.compressibility * impulse.y;
         solve.scale = clamp(1.0 + total.w / max(work, 1e-30), 0.5, 1.1);
-        let moved = state.max_speed * state.dt / params.particle_spacing;
+        let fastest = state.max_speed * state.dt / params.particle_spacing;
         let late = part * (f32(solve.iteration) - 3.0) / 8.0;
-        solve.renewal = select(clamp(max(moved, late), 0.02, 1.0), 1.0, params.implicit_viscosity > 0.0);
+        solve.renewal = select(clamp(max(fastest, late), 0.02, 1.0), 1.0, params.implicit_viscosity > 0.0);
         solve.warm_start = select(0.5, 1.0, has_converged);
+        let moved = sqrt(impulse.x / n) * state.dt / params.particle_spacing;
+        solve.shortened = clamp(LARGEST_STOP / max(moved, 1e-30), LEAST_PART, 1.0);
+        state.dt *= solve.shortened;
         if (!has_converged) {
             counters[COUNTER_UNCONVERGED] += 1u;
             counters[COUNTER_SHORTEN] = 1u;

@@ -1,4 +1,12 @@
 //! Ends an iteration: the mean residual, whether to stop, and the factor of the next direction (see the [module](super)).
+//!
+//! # Impacts
+//! A layer of water that falls flat on a floor loses its velocity in one step. The system is linear, so this step closes the
+//! whole gap to the floor, and leaves excesses of density of up to 40 %, because the density is not linear in the
+//! displacement. Where the accepted pressure displaces the particles by more than 0.05 spacings (root mean square over the
+//! fluid), the step is therefore shortened after the solution: the velocities receive the whole impulse of the pressure, and
+//! the positions advance for a shorter time, at least a tenth of the step. What remains of the gap closes in the next steps, at
+//! the lower velocity. In other flows nothing is shortened: gravity limits the step so that it displaces by 0.02 spacings.
 
 mod cpu;
 
@@ -7,6 +15,11 @@ use splashdown_gpu::{PassDesc, bindings};
 
 use crate::cells::{GRID, Grid, ROWS};
 use crate::state::{PARAMS, Params, SOLVE, STATE, STEP_COUNTERS, SolveState, StepState};
+
+/// The largest displacement by the pressure in a step, in spacings: the root mean square over the fluid.
+const LARGEST_STOP: f32 = 0.05;
+/// The shortest step over the length that the pressure was solved for.
+const LEAST_PART: f32 = 0.1;
 
 bindings! {
     /// The buffers of `implicit_decide.wgsl`.

@@ -1,4 +1,4 @@
-use glam::Vec4Swizzles;
+use glam::{Vec3, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::FinishBindings;
@@ -23,6 +23,8 @@ pub(super) fn finish(buffers: FinishBindings<'_>) {
         counters,
     } = buffers;
     let active = (cell_start[grid.cell_count as usize].min(state.run_count)) as usize;
+    let solved_dt = state.dt / solve.shortened;
+    let impulse_scale = solve.scale / solve.shortened;
     pressures[active..state.run_count.max(active as u32) as usize].fill(0.0);
     let largest = accelerations[..active]
         .par_chunks_mut(CHUNK)
@@ -35,10 +37,15 @@ pub(super) fn finish(buffers: FinishBindings<'_>) {
             for (k, a) in accelerations.iter_mut().enumerate() {
                 let i = chunk * CHUNK + k;
                 let before = velocities[i].xyz();
-                let free = before + state.dt * a.xyz();
-                let u = free + solve.scale * (predicted[k].xyz() - free);
+                let solved = before + solved_dt * a.xyz();
                 let accepted = predicted[k].w;
-                let pressure = if accepted == SolveState::NO_PRESSURE { 0.0 } else { solve.scale * accepted };
+                let (free, change, pressure) = if accepted == SolveState::NO_PRESSURE {
+                    (solved, Vec3::ZERO, 0.0)
+                } else {
+                    let free = before + state.dt * a.xyz();
+                    (free, solve.scale * (predicted[k].xyz() - solved), impulse_scale * accepted)
+                };
+                let u = free + change;
                 let rho = densities[k].x;
                 predicted[k] = ((u - free) / state.dt).extend(pressure);
                 *a = ((u - before) / state.dt).extend(a.w);

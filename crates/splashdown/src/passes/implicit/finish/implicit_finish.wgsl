@@ -14,9 +14,15 @@ var<workgroup> highest: atomic<u32>;
 fn finish(i: u32) -> f32 {
     let before = sorted_velocities[i].xyz;
     let other = accelerations[i];
-    let free = before + state.dt * other.xyz;
-    let u = free + solve.scale * (predicted[i].xyz - free);
-    let k = select(solve.scale * predicted[i].w, 0.0, predicted[i].w == NO_PRESSURE);
+    let solved = before + state.dt / solve.shortened * other.xyz;
+    var free = before + state.dt * other.xyz;
+    var u = free + solve.scale * (predicted[i].xyz - solved);
+    var k = solve.scale / solve.shortened * predicted[i].w;
+    if (predicted[i].w == NO_PRESSURE) {
+        free = solved;
+        u = solved;
+        k = 0.0;
+    }
     let rho = densities[i].x;
     predicted[i] = vec4((u - free) / state.dt, k);
     accelerations[i] = vec4((u - before) / state.dt, other.w);

@@ -1,6 +1,9 @@
 //! The results of the iterations, scaled so that the residual does no work: the whole acceleration, that by the pressure
 //! (in `predicted`), the pressure, the pressure with which the next step starts, and the pressure that limits its length.
 //!
+//! If the step was shortened after the solution ([`decide`](super::decide)), the impulse of the pressure is that of the whole
+//! length, so that the pressure is larger. A nozzle determines the velocity of its particles, whatever the length.
+//!
 //! The limit keeps displacements across the neighbours from growing over several steps, so it follows from a mean over the
 //! steps: max(r, 1 - r) of the new pressure and the rest of the old mean, where r is the part of the new pressure in the mean
 //! with which the next step starts. In violent flows r is about a half, and the mean follows a lasting pressure within two
