@@ -88,11 +88,9 @@ fn vertex_main(@builtin(vertex_index) index: u32, @builtin(instance_index) pane:
     out.normal = vec3f(0.0);
     out.normal[along] = select(-1.0, 1.0, side == 1u);
     out.position = globals.clip_from_world * vec4f(out.world, 1.0);
-    // A pane is behind the liquid if the eye is on its inner side.
-    let inner = select(globals.eye[axis] > globals.box_min[axis], globals.eye[axis] < globals.box_max[axis], upper == 1u);
     let is_part = (PART == NARROW) == (along != axis);
     let faces_eye = dot(globals.eye - out.world, out.normal) > 0.0;
-    if !is_glass(axis, upper) || !is_part || !faces_eye || inner != (BEHIND == 1u) {
+    if !is_glass(axis, upper) || !is_part || !faces_eye || is_behind(axis, upper == 1u) != (BEHIND == 1u) {
         out.position = vec4f(2.0, 2.0, 2.0, 1.0);
     }
     return out;
@@ -107,6 +105,27 @@ fn guided_light(world: vec3f, from_eye: vec3f, normal: vec3f, cosine: f32) -> ve
     let bent = sqrt(1.0 - (1.0 - cosine * cosine) / (GLASS_INDEX * GLASS_INDEX));
     let light = environment(world - across * normal, from_eye, SPREAD * globals.pixel_angle);
     return light * exp(-ABSORPTION * (across / bent));
+}
+
+// Whether the eye is on the inner side of a pane: the pane is behind the liquid.
+fn is_behind(axis: u32, upper: bool) -> bool {
+    return select(globals.eye[axis] > globals.box_min[axis], globals.eye[axis] < globals.box_max[axis], upper);
+}
+
+// Whether a point of a pane behind the liquid is in the corner with another such pane, where one looks into the narrow face
+// of one of them.
+fn is_in_corner(world: vec3f, normal: vec3f) -> bool {
+    let axis = select(0u, 2u, abs(normal.x) > 0.5);
+    let t = drawn_thickness();
+    let is_low = world[axis] < globals.box_min[axis] + t && is_glass(axis, 0u) && is_behind(axis, false);
+    let is_high = world[axis] > globals.box_max[axis] - t && is_glass(axis, 1u) && is_behind(axis, true);
+    return is_low || is_high;
+}
+
+// The light that comes out of the corner of two panes. It has passed through glass along the height of the pane.
+fn corner_light(world: vec3f, from_eye: vec3f) -> vec3f {
+    let height = globals.box_max.y - globals.floor_height;
+    return environment(world, from_eye, SPREAD * globals.pixel_angle) * exp(-ABSORPTION * height);
 }
 
 @fragment
@@ -131,5 +150,10 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
     }
     // Both faces of the pane reflect.
     let mirrored = 1.0 - through_pane(cosine);
+    if BEHIND == 1u && is_in_corner(in.world, in.normal) {
+        // Both panes contribute a half.
+        let opacity = 0.5 * globals.glass_thickness / drawn_thickness();
+        return vec4f(present(mix(corner_light(in.world, from_eye), reflection, mirrored)) * opacity, opacity);
+    }
     return vec4f(present(reflection) * mirrored, mirrored + (1.0 - mirrored) * 0.012);
 }
