@@ -49,6 +49,13 @@ pub fn cases() -> Vec<Case> {
             [5.0, 0.01],
         ),
         decide_in(Sums { params: weightless, ..sums() }, "without gravity", solving(), 0.1, [5.0, 0.001]),
+        decide_in(
+            Sums { params: viscous, impulse: 1e7, ..sums() },
+            "an impact of a viscous fluid",
+            solving(),
+            0.1,
+            [5.0, 0.3],
+        ),
         decide_in(Sums { impulse: 1e7, ..sums() }, "an impact", solving(), 0.1, [5.0, 0.3]),
         decide_in(Sums { impulse: 1e11, ..sums() }, "a fast impact", solving(), 0.1, [5.0, 0.3]),
     ]);
@@ -189,8 +196,10 @@ fn decide_in(
             if world.params.implicit_viscosity > 0.0 { 1.0 } else { moved.max(late).clamp(0.02, 1.0) };
         // The pressure displaces by at most 0.05 spacings.
         let displaced = (impulse / n).sqrt() * f64::from(state.dt) / f64::from(world.params.particle_spacing);
-        solve.shortened = (0.05 / displaced).clamp(0.1, 1.0) as f32;
-        state.dt *= solve.shortened;
+        if world.params.implicit_viscosity == 0.0 {
+            solve.shortened = (0.05 / displaced).clamp(0.1, 1.0) as f32;
+            state.dt *= solve.shortened;
+        }
         state.iterations += solve.iteration;
         state.most_iterations = state.most_iterations.max(solve.iteration);
         state.residual = state.residual.max(error as f32);

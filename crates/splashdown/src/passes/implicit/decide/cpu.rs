@@ -36,9 +36,11 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
         let late = strictness * (solve.iteration as f32 - 3.0) / 8.0;
         solve.renewal =
             if params.implicit_viscosity > 0.0 { 1.0 } else { fastest.max(late).clamp(0.02, 1.0) };
-        let moved = (impulse.x / n).sqrt() * state.dt / params.particle_spacing;
-        solve.shortened = (LARGEST_STOP / moved.max(1e-30)).clamp(LEAST_PART, 1.0);
-        state.dt *= solve.shortened;
+        if params.implicit_viscosity == 0.0 {
+            let moved = (impulse.x / n).sqrt() * state.dt / params.particle_spacing;
+            solve.shortened = (LARGEST_STOP / moved.max(1e-30)).clamp(LEAST_PART, 1.0);
+            state.dt *= solve.shortened;
+        }
         if !has_converged {
             solve.warm_start = 0.5;
             counters[StepCounters::UNCONVERGED] += 1;

@@ -49,9 +49,11 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, worst: f32, n: f32) {
         let late = part * (f32(solve.iteration) - 3.0) / 8.0;
         solve.renewal = select(clamp(max(fastest, late), 0.02, 1.0), 1.0, params.implicit_viscosity > 0.0);
         solve.warm_start = select(0.5, 1.0, has_converged);
-        let moved = sqrt(impulse.x / n) * state.dt / params.particle_spacing;
-        solve.shortened = clamp(LARGEST_STOP / max(moved, 1e-30), LEAST_PART, 1.0);
-        state.dt *= solve.shortened;
+        if (params.implicit_viscosity == 0.0) {
+            let moved = sqrt(impulse.x / n) * state.dt / params.particle_spacing;
+            solve.shortened = clamp(LARGEST_STOP / max(moved, 1e-30), LEAST_PART, 1.0);
+            state.dt *= solve.shortened;
+        }
         if (!has_converged) {
             counters[COUNTER_UNCONVERGED] += 1u;
             counters[COUNTER_SHORTEN] = 1u;

@@ -6,7 +6,8 @@
 //! displacement. Where the accepted pressure displaces the particles by more than 0.05 spacings (root mean square over the
 //! fluid), the step is therefore shortened after the solution: the velocities receive the whole impulse of the pressure, and
 //! the positions advance for a shorter time, at least a tenth of the step. What remains of the gap closes in the next steps, at
-//! the lower velocity. In other flows nothing is shortened: gravity limits the step so that it displaces by 0.02 spacings.
+//! the lower velocity. Few other steps are shortened: where the pressure carries the weight of the water, it displaces by at
+//! most 0.02 spacings, because gravity limits the step. With an implicit viscosity, whose steps are longer, none is.
 
 mod cpu;
 
