@@ -52,10 +52,10 @@ pub struct Line {
     /// Pressure iterations since the start.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub iterations: Option<u64>,
-    /// The mean error of the density at which the pressure iterations stop; in the first and the last line.
+    /// The mean residual of the density at which the pressure iterations stop; in the first and the last line.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f32>,
-    /// The largest mean error of the density at which the iterations of a step since the last frame stopped, or of the whole
+    /// The largest mean residual of the density at which the iterations of a step since the last frame stopped, or of the whole
     /// run at its end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub residual: Option<f32>,

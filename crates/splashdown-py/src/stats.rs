@@ -135,7 +135,7 @@ stats! {
     /// >>> 0 < simulation.advance(0.01).most_iterations <= 40
     /// True
     most_iterations: u32,
-    /// The largest mean error of the density at which the iterations of a step of this call stopped, as a part of the rest
+    /// The largest mean residual of the density at which the iterations of a step of this call stopped, as a part of the rest
     /// density.
     ///
     /// >>> bool(0 <= simulation.advance(0.01).residual <= 0.001)

@@ -222,7 +222,7 @@ pub struct Figures {
     pub iterations: f64,
     /// Mean relative excess of density, if the pressure is implicit.
     pub compression: f32,
-    /// The largest mean error of the density at which the iterations of a step stopped, if the pressure is implicit.
+    /// The largest mean residual of the density at which the iterations of a step stopped, if the pressure is implicit.
     pub residual: f32,
     /// Viscosity iterations per step since the start; zero with an explicit viscosity.
     pub viscous_iterations: f64,

@@ -53,7 +53,7 @@ pub struct Stats {
     /// The most pressure iterations of a step of this call.
     #[serde(default)]
     pub most_iterations: u32,
-    /// The largest mean error of the density at which the iterations of a step of this call stopped, predicted for the end
+    /// The largest mean residual of the density at which the iterations of a step of this call stopped, predicted for the end
     /// of the step, as a part of the rest density.
     #[serde(default)]
     pub residual: f32,

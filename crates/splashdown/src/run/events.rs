@@ -154,7 +154,7 @@ pub struct Started {
     pub memory: u64,
     /// The first time step in seconds.
     pub dt: f32,
-    /// The mean error of the density at which the pressure iterations stop, over the rest density; `None` if the pressure
+    /// The mean residual of the density at which the pressure iterations stop, over the rest density; `None` if the pressure
     /// is explicit.
     pub tolerance: Option<f32>,
 }
@@ -236,10 +236,10 @@ pub struct Summary {
     pub simulated_per_wall: f64,
     /// The largest density error of all frames, of excess and deficit.
     pub density_error: f32,
-    /// The mean error of the density at which the pressure iterations stop, over the rest density; `None` if the pressure
+    /// The mean residual of the density at which the pressure iterations stop, over the rest density; `None` if the pressure
     /// is explicit.
     pub tolerance: Option<f32>,
-    /// The largest mean error of the density at which the iterations of a step stopped, since the start or the checkpoint;
+    /// The largest mean residual of the density at which the iterations of a step stopped, since the start or the checkpoint;
     /// zero if the pressure is explicit.
     pub residual: f32,
     /// The energy balance at the end.

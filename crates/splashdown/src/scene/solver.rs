@@ -109,7 +109,7 @@ pub struct Solver {
     pub min_dt: f32,
     /// The algorithm that sorts particles into cells.
     pub sort: Sort,
-    /// Largest mean error of the density that the implicit pressure of `dfsph` may have, as a part of the rest density.
+    /// Largest mean residual of the density that the implicit pressure of `dfsph` may have, as a part of the rest density.
     /// The mean over each group of 64 particles in the order of the cells may be five times as large.
     pub tolerance: f32,
     /// Largest number of iterations of the implicit pressure in a step. `None`: a quarter of the spacings along the longest

@@ -87,7 +87,7 @@ pub(super) static SOLVER: Table = Table {
         key(
             "tolerance",
             a_number(1e-5, 0.01, ""),
-            "Mean error of the density, as a part of the rest density, at which the pressure iterations of dfsph stop; the mean over 64 neighbouring particles may be five times as large. The iterations of an implicit viscosity stop at a residual of ten times this part of the change of the velocity by all other forces. Default: 0.001; 0.0001 with surface_tension = \"csf\".",
+            "Mean residual of the density, as a part of the rest density, at which the pressure iterations of dfsph stop; the mean over 64 neighbouring particles may be five times as large. The iterations of an implicit viscosity stop at a residual of ten times this part of the change of the velocity by all other forces. Default: 0.001; 0.0001 with surface_tension = \"csf\".",
         )
         .also(&["max_error", "maxError"]),
         key(
