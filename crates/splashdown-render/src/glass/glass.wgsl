@@ -117,10 +117,15 @@ fn is_behind(axis: u32, upper: bool) -> bool {
 fn is_in_corner(world: vec3f, normal: vec3f) -> bool {
     let axis = select(0u, 2u, abs(normal.x) > 0.5);
     let t = drawn_thickness();
-    let is_low = world[axis] < globals.box_min[axis] + t && is_glass(axis, 0u) && is_behind(axis, false);
-    let is_high = world[axis] > globals.box_max[axis] - t && is_glass(axis, 1u) && is_behind(axis, true);
+    let low = world[axis] - globals.box_min[axis];
+    let high = globals.box_max[axis] - world[axis];
+    let is_low = low >= 0.0 && low < t && is_glass(axis, 0u) && is_behind(axis, false);
+    let is_high = high >= 0.0 && high < t && is_glass(axis, 1u) && is_behind(axis, true);
     return is_low || is_high;
 }
+
+// Opacity of a corner: the edges of the panes are not polished.
+const CORNER_OPACITY = 0.6;
 
 // The light that comes out of the corner of two panes. It has passed through glass along the height of the pane.
 fn corner_light(world: vec3f, from_eye: vec3f) -> vec3f {
@@ -150,10 +155,10 @@ fn fragment_main(in: Varying) -> @location(0) vec4f {
     }
     // Both faces of the pane reflect.
     let mirrored = 1.0 - through_pane(cosine);
+    let plain = vec4f(present(reflection) * mirrored, mirrored + (1.0 - mirrored) * 0.012);
     if BEHIND == 1u && is_in_corner(in.world, in.normal) {
-        // Both panes contribute a half.
-        let opacity = 0.5 * globals.glass_thickness / drawn_thickness();
-        return vec4f(present(mix(corner_light(in.world, from_eye), reflection, mirrored)) * opacity, opacity);
+        let tinted = vec4f(present(mix(corner_light(in.world, from_eye), reflection, mirrored)), 1.0);
+        return mix(plain, tinted, CORNER_OPACITY * globals.glass_thickness / drawn_thickness());
     }
-    return vec4f(present(reflection) * mirrored, mirrored + (1.0 - mirrored) * 0.012);
+    return plain;
 }

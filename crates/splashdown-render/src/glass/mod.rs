@@ -6,8 +6,8 @@
 //! pane); the narrow ones show the light that the pane guides from its opposite end, green and dark
 //! from absorption on the way. A large face mirrors the floor below the height of the eye and the sky
 //! above it; each part has its own pipeline. The corner of two panes behind the liquid, into whose
-//! narrow faces one looks, is tinted. Panes behind the
-//! liquid are drawn before it, the others after it. There is no lid: a pane that reflects the sky
+//! narrow faces one looks, is tinted. Panes behind the liquid are drawn before it, the others after
+//! it. There is no lid: a pane that reflects the sky
 //! would hide the liquid in most views. The floor of the tank is that of the scene.
 //!
 //! # Why not the other way

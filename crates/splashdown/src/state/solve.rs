@@ -28,8 +28,8 @@ gpu_struct! {
         renewal: f32,
         /// Length of the step over that of the longest one without the limits by the pressure and by the frame; at most 1.
         dt_ratio: f32,
-        /// The length of the step over the length that the pressure was solved for: below 1 if the pressure stops much of the fluid.
-        shortened: f32,
+        /// Length of the step over the length that the pressure was solved for; below 1 if it stops much of the fluid.
+        advanced_part: f32,
         /// Padding.
         unused: f32,
     }
@@ -52,7 +52,7 @@ impl SolveState {
             scale: 1.0,
             renewal: 1.0,
             dt_ratio,
-            shortened: 1.0,
+            advanced_part: 1.0,
             unused: 0.0,
         }
     }

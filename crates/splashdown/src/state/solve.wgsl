@@ -10,7 +10,7 @@ struct SolveState {
     scale: f32,
     renewal: f32,
     dt_ratio: f32,
-    shortened: f32,
+    advanced_part: f32,
     unused: f32,
 }
 

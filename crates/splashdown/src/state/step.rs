@@ -12,7 +12,7 @@ gpu_struct! {
     pub struct StepState {
         /// The current time step in seconds.
         dt: f32,
-        /// The largest stable time step; `dt` may be shorter to reach the end of a frame.
+        /// The largest stable time step; `dt` may be shorter to reach the end of a frame, or after an impact.
         stable_dt: f32,
         /// Simulated time in seconds: that of the frame's start plus what has passed since, so that the rounding errors of
         /// thousands of steps do not add up.

@@ -33,6 +33,8 @@
 //!            beta = sum a g^2 / (the previous sum), or 0 in the first iteration and if the sum has grown
 //! ```
 //!
+//! After an impact that stops much of the fluid the step is shortened, once its pressure is known ([`decide`]).
+//!
 //! The residual is two-sided: with a one-sided one and the whole old pressure, excess pressures would be accepted and
 //! energy would grow. The residual that is tested belongs to the velocity u of the same iteration, so that no further visit
 //! of the neighbours follows.

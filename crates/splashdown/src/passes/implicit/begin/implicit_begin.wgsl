@@ -18,7 +18,7 @@ fn reset() {
     solve.renewal = 1.0;
     let longest = longest_step(max(state.max_speed, state.body_speed), 0.0, 0.0);
     solve.dt_ratio = min(state.dt / longest, 1.0);
-    solve.shortened = 1.0;
+    solve.advanced_part = 1.0;
     solve.unused = 0.0;
 }
 

@@ -1,7 +1,7 @@
 use glam::Vec4;
 
 use super::super::{GROUP, LARGEST_IN_GROUP};
-use super::{DecideBindings, LARGEST_STOP, LEAST_PART};
+use super::{DecideBindings, LARGEST_DISPLACEMENT, LEAST_PART, SHORTENED_DISPLACEMENT};
 use crate::state::{Params, StepCounters};
 
 pub(super) fn decide(buffers: DecideBindings<'_>) {
@@ -36,10 +36,10 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
         let late = strictness * (solve.iteration as f32 - 3.0) / 8.0;
         solve.renewal =
             if params.implicit_viscosity > 0.0 { 1.0 } else { fastest.max(late).clamp(0.02, 1.0) };
-        if params.implicit_viscosity == 0.0 {
-            let moved = (impulse.x / n).sqrt() * state.dt / params.particle_spacing;
-            solve.shortened = (LARGEST_STOP / moved.max(1e-30)).clamp(LEAST_PART, 1.0);
-            state.dt *= solve.shortened;
+        let displaced = (impulse.x / n).sqrt() * state.dt / params.particle_spacing;
+        if has_converged && displaced > LARGEST_DISPLACEMENT && params.implicit_viscosity == 0.0 {
+            solve.advanced_part = (SHORTENED_DISPLACEMENT / displaced).max(LEAST_PART);
+            state.dt *= solve.advanced_part;
         }
         if !has_converged {
             solve.warm_start = 0.5;

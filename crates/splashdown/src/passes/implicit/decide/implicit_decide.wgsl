@@ -8,7 +8,8 @@
 
 const GROUP: f32 = 64.0; // particles per sum
 const LARGEST_IN_GROUP: f32 = 5.0; // the mean residual of a group may be this many times the tolerance
-const LARGEST_STOP: f32 = 0.05; // see decide/mod.rs
+const LARGEST_DISPLACEMENT: f32 = 0.1; // see decide/mod.rs
+const SHORTENED_DISPLACEMENT: f32 = 0.05;
 const LEAST_PART: f32 = 0.1;
 
 var<workgroup> sums: array<vec4<f32>, 256>;
@@ -49,10 +50,10 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, worst: f32, n: f32) {
         let late = part * (f32(solve.iteration) - 3.0) / 8.0;
         solve.renewal = select(clamp(max(fastest, late), 0.02, 1.0), 1.0, params.implicit_viscosity > 0.0);
         solve.warm_start = select(0.5, 1.0, has_converged);
-        if (params.implicit_viscosity == 0.0) {
-            let moved = sqrt(impulse.x / n) * state.dt / params.particle_spacing;
-            solve.shortened = clamp(LARGEST_STOP / max(moved, 1e-30), LEAST_PART, 1.0);
-            state.dt *= solve.shortened;
+        let displaced = sqrt(impulse.x / n) * state.dt / params.particle_spacing;
+        if (has_converged && displaced > LARGEST_DISPLACEMENT && params.implicit_viscosity == 0.0) {
+            solve.advanced_part = max(SHORTENED_DISPLACEMENT / displaced, LEAST_PART);
+            state.dt *= solve.advanced_part;
         }
         if (!has_converged) {
             counters[COUNTER_UNCONVERGED] += 1u;

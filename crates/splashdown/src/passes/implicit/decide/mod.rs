@@ -1,13 +1,19 @@
-//! Ends an iteration: the mean residual, whether to stop, and the factor of the next direction (see the [module](super)).
+//! Ends an iteration: the mean residual, whether to stop, the factor of the next direction (see the [module](super)), and
+//! after an impact the length of the step.
 //!
 //! # Impacts
 //! A layer of water that falls flat on a floor loses its velocity in one step. The system is linear, so this step closes the
 //! whole gap to the floor, and leaves excesses of density of up to 40 %, because the density is not linear in the
-//! displacement. Where the accepted pressure displaces the particles by more than 0.05 spacings (root mean square over the
-//! fluid), the step is therefore shortened after the solution: the velocities receive the whole impulse of the pressure, and
-//! the positions advance for a shorter time, at least a tenth of the step. What remains of the gap closes in the next steps, at
-//! the lower velocity. Few other steps are shortened: where the pressure carries the weight of the water, it displaces by at
-//! most 0.02 spacings, because gravity limits the step. With an implicit viscosity, whose steps are longer, none is.
+//! displacement. Where the pressure displaces the particles by more than 0.1 spacings (root mean square over the fluid), the
+//! step is therefore shortened after the solution, until this is 0.05 spacings, or to a tenth. The velocities receive the
+//! whole impulse of the pressure, and the positions advance for the shorter time. What remains of the gap closes in the next
+//! steps, at the lower velocity. All other forces act for the shorter time, too: their share of the solution, such as the
+//! weight that a pressure carries elsewhere, is corrected in the next step.
+//!
+//! A step of a frame that is its last leaves at least half of its length to another one, because it is never shortened by
+//! less: the density of a very short step must not change by a fixed amount. The pressure of water at rest displaces by at
+//! most 0.02 spacings, because gravity limits the step. Not shortened are steps that did not converge, which are followed by
+//! shorter ones anyway, and those with an implicit viscosity, which are longer.
 
 mod cpu;
 
@@ -17,8 +23,10 @@ use splashdown_gpu::{PassDesc, bindings};
 use crate::cells::{GRID, Grid, ROWS};
 use crate::state::{PARAMS, Params, SOLVE, STATE, STEP_COUNTERS, SolveState, StepState};
 
-/// The largest displacement by the pressure in a step, in spacings: the root mean square over the fluid.
-const LARGEST_STOP: f32 = 0.05;
+/// The largest displacement by the pressure in a step that is not shortened, in spacings: the root mean square over the fluid.
+const LARGEST_DISPLACEMENT: f32 = 0.1;
+/// The displacement to which a step is shortened. At most half of the former, so that no very short step remains.
+const SHORTENED_DISPLACEMENT: f32 = 0.05;
 /// The shortest step over the length that the pressure was solved for.
 const LEAST_PART: f32 = 0.1;
 

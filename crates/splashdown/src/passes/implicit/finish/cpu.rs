@@ -23,8 +23,8 @@ pub(super) fn finish(buffers: FinishBindings<'_>) {
         counters,
     } = buffers;
     let active = (cell_start[grid.cell_count as usize].min(state.run_count)) as usize;
-    let solved_dt = state.dt / solve.shortened;
-    let impulse_scale = solve.scale / solve.shortened;
+    let solved_dt = state.dt / solve.advanced_part;
+    let impulse_scale = solve.scale / solve.advanced_part;
     pressures[active..state.run_count.max(active as u32) as usize].fill(0.0);
     let largest = accelerations[..active]
         .par_chunks_mut(CHUNK)
@@ -51,7 +51,8 @@ pub(super) fn finish(buffers: FinishBindings<'_>) {
                 *a = ((u - before) / state.dt).extend(a.w);
                 densities[k].y = params.pressure_factor * pressure * rho * rho / params.rest_density;
                 let old = sorted_pressures[i];
-                pressures[k] = solve.warm_start * (old + solve.renewal * (pressure - old));
+                let start = pressure * solve.advanced_part;
+                pressures[k] = solve.warm_start * (old + solve.renewal * (start - old));
                 largest = largest.max(old + solve.renewal.max(1.0 - solve.renewal) * (pressure - old));
             }
             largest

@@ -14,10 +14,10 @@ var<workgroup> highest: atomic<u32>;
 fn finish(i: u32) -> f32 {
     let before = sorted_velocities[i].xyz;
     let other = accelerations[i];
-    let solved = before + state.dt / solve.shortened * other.xyz;
+    let solved = before + state.dt / solve.advanced_part * other.xyz;
     var free = before + state.dt * other.xyz;
     var u = free + solve.scale * (predicted[i].xyz - solved);
-    var k = solve.scale / solve.shortened * predicted[i].w;
+    var k = solve.scale / solve.advanced_part * predicted[i].w;
     if (predicted[i].w == NO_PRESSURE) {
         free = solved;
         u = solved;
@@ -28,7 +28,7 @@ fn finish(i: u32) -> f32 {
     accelerations[i] = vec4((u - before) / state.dt, other.w);
     densities[i] = vec2(rho, params.pressure_factor * k * rho * rho / params.rest_density);
     let old = sorted_pressures[i];
-    pressures[i] = solve.warm_start * mix(old, k, solve.renewal);
+    pressures[i] = solve.warm_start * mix(old, k * solve.advanced_part, solve.renewal);
     return max(mix(old, k, max(solve.renewal, 1.0 - solve.renewal)), 0.0);
 }
 

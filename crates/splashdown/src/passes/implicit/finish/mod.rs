@@ -2,7 +2,8 @@
 //! (in `predicted`), the pressure, the pressure with which the next step starts, and the pressure that limits its length.
 //!
 //! If the step was shortened after the solution ([`decide`](super::decide)), the impulse of the pressure is that of the whole
-//! length, so that the pressure is larger. A nozzle determines the velocity of its particles, whatever the length.
+//! length, so that the pressure of this step is larger; the next one starts with the pressure of the solution. A nozzle
+//! determines the velocity of its particles, whatever the length.
 //!
 //! The limit keeps displacements across the neighbours from growing over several steps, so it follows from a mean over the
 //! steps: max(r, 1 - r) of the new pressure and the rest of the old mean, where r is the part of the new pressure in the mean
