@@ -19,10 +19,25 @@ const SLOWEST_SOUND: f32 = 5.0;
 /// The part of the volume of a closed domain from which it counts as full.
 const FULL: f64 = 0.99;
 
-/// Warns of values that are valid but probably unintended.
+/// Warns of values that are valid but probably unintended, and refuses steps that are too long.
 pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Result<(), Reported> {
     let (fluid, solver) = (&root.section("fluid")?, &root.section("solver")?);
     check_flow(scene, root);
+    refuse_long_steps(scene, solver, derived)?;
+    check_viscosity(scene, solver, derived);
+    check_negative_pressure(scene, solver);
+    check_room(scene, root, solver);
+    check_surface_tension(scene, solver);
+    check_steps(scene, solver, derived);
+    check_sound(scene, solver, derived);
+    check_initial_pressure(scene, fluid);
+    check_gauges(scene, solver);
+    check_volume(scene, fluid);
+    Ok(())
+}
+
+/// Refuses steps that are too long for the forces.
+fn refuse_long_steps(scene: &Scene, solver: &Section<'_>, derived: &Derived) -> Result<(), Reported> {
     if scene.solver.method == Method::Dfsph {
         let limit = Derived::body_force_dt(scene);
         for (name, given) in [("max_dt", scene.solver.max_dt), ("min_dt", scene.solver.min_dt)] {
@@ -47,9 +62,11 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         let hint = "leave the key out, or use a coarser particle_spacing or a lower sound_speed";
         return Err(solver.complain("min_dt", message, &format!("at most {limit:.3e} s"), hint));
     }
-    check_viscosity(scene, solver, derived);
-    check_negative_pressure(scene, solver);
-    check_room(scene, root, solver);
+    Ok(())
+}
+
+/// Warns of what surface tension cannot do, and of a contact angle without a wall.
+fn check_surface_tension(scene: &Scene, solver: &Section<'_>) {
     if scene.solver.surface_tension == SurfaceTension::Csf && scene.solver.method == Method::Dfsph {
         let message = "the pressure of dfsph is never negative: with surface_tension = \"csf\" drops hold \
                        together, and water under a trough or in a neck tears"
@@ -68,6 +85,10 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         let message = "solver.contact_angle has no effect: all sides of the domain are open".to_owned();
         solver.warn("contact_angle", message, "close a side, or leave it out");
     }
+}
+
+/// Warns of steps that are too short or too many.
+fn check_steps(scene: &Scene, solver: &Section<'_>, derived: &Derived) {
     if derived.dt_estimate < scene.solver.min_dt {
         let message = format!(
             "the scene needs a time step of about {:.1e} s, but solver.min_dt is {:.1e} s",
@@ -92,6 +113,10 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         };
         solver.warn("cfl_factor", message, hint);
     }
+}
+
+/// Warns of a speed of sound that is too low.
+fn check_sound(scene: &Scene, solver: &Section<'_>, derived: &Derived) {
     if scene.solver.method == Method::Wcsph && derived.sound_speed < SLOWEST_SOUND * derived.reference_speed {
         let ratio = derived.sound_speed / derived.reference_speed;
         let name = if solver.has("stiffness") { "stiffness" } else { "sound_speed" };
@@ -106,6 +131,10 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
             &format!("the density may vary by about {percent:.0} %; a ratio of ten keeps it within 1 %"),
         );
     }
+}
+
+/// Warns of an initial pressure that no fluid has.
+fn check_initial_pressure(scene: &Scene, fluid: &Section<'_>) {
     if fluid.has("initial_pressure")
         && scene.fluid.initial_pressure == InitialPressure::Hydrostatic
         && !sample::can_start_at_rest(scene)
@@ -114,6 +143,10 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         let hint = "it needs a box at rest on a closed side and gravity along an axis";
         fluid.warn("initial_pressure", message, hint);
     }
+}
+
+/// Warns of gauges near bodies whose pressure is wrong.
+fn check_gauges(scene: &Scene, solver: &Section<'_>) {
     let gauge = scene.probes.iter().find(|probe| matches!(probe.quantity, Quantity::Pressure(_)));
     if let Some(gauge) = gauge
         && scene.solver.method != Method::Dfsph
@@ -127,6 +160,10 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
         );
         solver.warn("density", message, "to measure pressure set accuracy = \"engineering\" under [solver], or for impacts on bodies method = \"dfsph\"");
     }
+}
+
+/// Warns of blocks whose particles have another volume.
+fn check_volume(scene: &Scene, fluid: &Section<'_>) {
     for (index, sampler) in Sampler::all(&scene.domain, &scene.fluid).iter().enumerate() {
         let [x, y, z] = sampler.layers();
         let excess = sampler.volume_ratio().map_or(0.0, |ratio| ratio - 1.0);
@@ -140,7 +177,6 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
             fluid.warn("particle_spacing", message, hint);
         }
     }
-    Ok(())
 }
 
 /// Warns of a surface that is pulled together.
