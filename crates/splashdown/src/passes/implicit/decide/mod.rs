@@ -7,13 +7,13 @@
 //! displacement. Where the pressure displaces the particles by more than 0.1 spacings (root mean square over the fluid), the
 //! step is therefore shortened after the solution, until this is 0.05 spacings, or to a tenth. The velocities receive the
 //! whole impulse of the pressure, and the positions advance for the shorter time. What remains of the gap closes in the next
-//! steps, at the lower velocity. All other forces act for the shorter time, too: their share of the solution, such as the
-//! weight that a pressure carries elsewhere, is corrected in the next step.
+//! steps, at the lower velocity. All other forces act for the shorter time only, although the pressure balances them for the
+//! whole length. The next step corrects this.
 //!
-//! A step of a frame that is its last leaves at least half of its length to another one, because it is never shortened by
-//! less: the density of a very short step must not change by a fixed amount. The pressure of water at rest displaces by at
-//! most 0.02 spacings, because gravity limits the step. Not shortened are steps that did not converge, which are followed by
-//! shorter ones anyway, and those with an implicit viscosity, which are longer.
+//! A step is shortened to half of its length or less. The rest of a frame is then never much shorter than a step: every step
+//! removes a fixed part of an excess of density, which would be an explosion in a very short one. The pressure of water at rest
+//! displaces by at most 0.02 spacings, because gravity limits the step. Steps that did not converge are not shortened, because
+//! the next one is shorter anyway, and neither are those with an implicit viscosity, which are longer.
 
 mod cpu;
 
@@ -25,7 +25,7 @@ use crate::state::{PARAMS, Params, SOLVE, STATE, STEP_COUNTERS, SolveState, Step
 
 /// The largest displacement by the pressure in a step that is not shortened, in spacings: the root mean square over the fluid.
 const LARGEST_DISPLACEMENT: f32 = 0.1;
-/// The displacement to which a step is shortened. At most half of the former, so that no very short step remains.
+/// The displacement to which a step is shortened. At most half of the former (see the module).
 const SHORTENED_DISPLACEMENT: f32 = 0.05;
 /// The shortest step over the length that the pressure was solved for.
 const LEAST_PART: f32 = 0.1;
