@@ -3,8 +3,8 @@
 //!
 //! A visit of the candidates tests four times as many particles as there are neighbours, and a formula takes a square root.
 //! A list is made in one such visit, which also computes sums; a visit of a list takes a seventh of that. A
-//! neighbour takes 8 bytes: the factor and its index. Reading the list is what a visit waits for, so that subtracting the
-//! positions again costs less than reading their difference. Images behind walls are few and take 16 bytes: the vector, and
+//! neighbour takes 8 bytes: the factor and its index. Subtracting the positions again costs less than reading their
+//! difference. Images behind walls are few and take 16 bytes: the vector, and
 //! bits for index and reflection.
 //!
 //! The neighbours of four particles lie side by side (`list`), and registers contain a vector for each of the four. The sums
@@ -105,6 +105,13 @@ impl<R: Radial> NeighbourLists<R> {
             self.make_with(simd, sorted, Nothing, &pass);
         }
         self
+    }
+
+    /// The lists of the last call; makes them if they belong to another number of particles or to other conditions. Only
+    /// for particles that have not moved since: unlike [`of`](Self::of), it does not compare the positions.
+    pub fn kept(&mut self, sorted: Sorted<'_>) -> &Self {
+        let has_same_count = self.positions.len() == sorted.active_count();
+        if has_same_count && self.made_for == Some(conditions(sorted)) { self } else { self.of(sorted) }
     }
 
     /// Makes the lists, and runs a pass over the neighbours in the same visit.

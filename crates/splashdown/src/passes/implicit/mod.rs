@@ -66,6 +66,7 @@
 pub mod begin;
 pub mod decide;
 pub mod finish;
+mod points;
 pub mod predict;
 pub mod residual;
 pub mod system;

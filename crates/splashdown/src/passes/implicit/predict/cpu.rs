@@ -1,20 +1,14 @@
-use glam::{Vec3, Vec4, Vec4Swizzles};
+use glam::Vec4;
 use rayon::prelude::*;
 use splashdown_gpu::Scratch;
 
+use super::super::points::{CHUNK, Points, Second};
 use super::super::{GROUP, GROUPS};
 use super::PredictBindings;
 use crate::boundary::Images;
 use crate::kernel::Kernel;
 use crate::pairs::{NeighbourLists, Sorted, Values};
 use crate::state::SolveState;
-
-/// Particles per task.
-const CHUNK: usize = 4096;
-
-/// The position and the pressure of every particle. Kept from iteration to iteration, because new memory is slow.
-#[derive(Default)]
-struct Points(Vec<Vec4>);
 
 pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buffers: PredictBindings<'_>) {
     let PredictBindings {
@@ -48,22 +42,29 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
     let sorted =
         Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
     let n = sorted.active_count();
-    let mut points = std::mem::take(&mut scratch.get::<Points>().0);
-    points.resize(n, Vec4::ZERO);
-    let chunks = points.par_chunks_mut(CHUNK).zip(positions.par_chunks(CHUNK)).enumerate();
-    chunks.for_each(|(chunk, (points, positions))| {
-        for (k, (point, x)) in points.iter_mut().zip(positions).enumerate() {
-            *point = x.xyz().extend(pass.pressure(chunk * CHUNK + k));
+    let mut points = std::mem::take(scratch.get::<Points>());
+    // The particles keep their places for all iterations of a step.
+    let is_first = solve.iteration == 0 || points.pressures.len() != n;
+    if is_first {
+        points.begin(&positions[..n]);
+    }
+    points.pressures.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, points)| {
+        for (k, point) in points.iter_mut().enumerate() {
+            point.w = pass.pressure(chunk * CHUNK + k);
         }
     });
-    let lists = scratch.get::<NeighbourLists<K>>().of(sorted);
-    lists.for_each(sorted, &mut *predicted, &Values(&points), |i, negative, images| {
-        let own = points[i].w;
-        let of_image = |(gradient, _, j): (Vec4, Vec4, usize)| (own + points[j].w) * gradient;
+    let all = scratch.get::<NeighbourLists<K>>();
+    let lists = if is_first { all.of(sorted) } else { all.kept(sorted) };
+    let (pressures, outputs) = (&points.pressures, (&mut *predicted, Second(&mut points.velocities)));
+    lists.for_each(sorted, outputs, &Values(pressures), |i, negative, images| {
+        let own = pressures[i].w;
+        let of_image = |(gradient, _, j): (Vec4, Vec4, usize)| (own + pressures[j].w) * gradient;
         let sum = images.iter().map(of_image).sum::<Vec4>() - negative;
-        pass.finish(i, own, pass.factor * sum.xyz())
+        let result = pass.finish(i, own, pass.factor * sum);
+        (result, result)
     });
-    scratch.get::<Points>().0 = points;
+    points.predicted_in = Some(solve.iteration);
+    *scratch.get::<Points>() = points;
     let predicted = &predicted[..n];
     let tasks = predicted.par_chunks(GROUP * GROUPS).zip(impulses.par_chunks_mut(GROUPS));
     tasks.enumerate().for_each(|(task, (predicted, sums))| {
@@ -102,20 +103,16 @@ impl<const BODIES: bool> Predict<'_, BODIES> {
         (iterate.x + self.beta * iterate.y).max(least)
     }
 
-    /// True where a nozzle determines the motion.
+    /// The velocity of a particle with the pressure `k`, from the sum of D' k over its neighbours. The fourth components of
+    /// the sums have no meaning.
     #[inline(always)]
-    fn is_driven(&self, i: usize) -> bool {
-        self.free_velocities[i].w == 1.0
-    }
-
-    /// The velocity of a particle with the pressure `k`, from the sum of D' k over its neighbours.
-    #[inline(always)]
-    fn finish(&self, i: usize, k: f32, sum: Vec3) -> Vec4 {
-        let v = self.free_velocities[i].xyz();
-        if self.is_driven(i) {
-            return v.extend(SolveState::NO_PRESSURE);
+    fn finish(&self, i: usize, k: f32, sum: Vec4) -> Vec4 {
+        let free = self.free_velocities[i];
+        // A nozzle determines the motion.
+        if free.w == 1.0 {
+            return free.with_w(SolveState::NO_PRESSURE);
         }
-        let solid = if BODIES { k * self.solid_gradients[i].xyz() } else { Vec3::ZERO };
-        (v - self.dt * (sum + solid)).extend(k)
+        let solid = if BODIES { k * self.solid_gradients[i] } else { Vec4::ZERO };
+        (free - self.dt * (sum + solid)).with_w(k)
     }
 }

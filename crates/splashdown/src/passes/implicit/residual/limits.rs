@@ -1,72 +1,87 @@
-//! The range of the implicit pressure of a particle, and its residual there (see the [module](super)).
+//! The range of the implicit pressure of particles, and its residual there (see the [module](super)).
 
 use super::{LARGEST_HELD, LARGEST_REMOVED, LEAST_REMOVED};
+use crate::simd::Lanes;
 
-/// What determines the residual of a particle, besides the change of its density in the step.
+/// What determines the residual of particles, besides the change of their density in the step.
 #[derive(Clone, Copy)]
-pub(super) struct Limits {
+pub(super) struct Limits<V> {
     /// The smallest k, in m^2/s^2: zero, or minus the limit of the tension.
-    least: f32,
+    least: V,
     /// The excess of density that a pressure above zero takes away.
-    pushed: f32,
+    pushed: V,
     /// The excess of density that a pressure below zero takes away.
-    pulled: f32,
+    pulled: V,
 }
 
-/// The part of an excess of density that a step removes, for its length over that of the longest step; a deficit is unchanged.
+/// The smaller of both; `other` if either is NaN.
 #[inline(always)]
-pub(super) fn removed(excess: f32, tolerance: f32, dt_ratio: f32) -> f32 {
-    excess.min(LEAST_REMOVED.max(2.0 * tolerance) + LARGEST_REMOVED * dt_ratio * dt_ratio)
+pub(super) fn smaller<V: Lanes>(one: V, other: V) -> V {
+    one.if_less(other, one, other)
 }
 
-impl Limits {
-    /// Of a particle that cannot be under tension.
+/// The largest excess of density that a step removes, for its length over that of the longest step.
+#[inline(always)]
+pub(super) fn most_removed(tolerance: f32, dt_ratio: f32) -> f32 {
+    LEAST_REMOVED.max(2.0 * tolerance) + LARGEST_REMOVED * dt_ratio * dt_ratio
+}
+
+impl<V: Lanes> Limits<V> {
+    /// Of particles that cannot be under tension.
     #[inline(always)]
-    pub fn of(excess: f32) -> Self {
-        Self { least: 0.0, pushed: excess, pulled: excess }
+    pub fn of(excess: V) -> Self {
+        Self { least: V::splat(0.0), pushed: excess, pulled: excess }
     }
 
-    /// Of a particle inside the fluid, where this part of a deficit of density closes in the step.
+    /// Of particles inside the fluid, where this part of a deficit of density closes in the step.
     #[inline(always)]
-    pub fn inside(tension_limit: f32, closing: f32, excess: f32) -> Self {
-        let (pushed, pulled) = if excess < 0.0 {
-            let closed = (closing * excess).max(excess);
-            (closed.min(excess + LARGEST_HELD), closed)
-        } else {
-            (excess, excess)
-        };
-        Self { least: -tension_limit, pushed, pulled }
+    pub fn inside(tension_limit: f32, closing: f32, excess: V) -> Self {
+        let zero = V::splat(0.0);
+        let closed = (excess * closing).max(excess);
+        let held = smaller(closed, excess + LARGEST_HELD);
+        Self {
+            least: V::splat(-tension_limit),
+            pushed: excess.if_less(zero, held, excess),
+            pulled: excess.if_less(zero, closed, excess),
+        }
+    }
+
+    /// These where `a` is below `b`, others elsewhere.
+    #[inline(always)]
+    pub fn where_less(self, a: V, b: V, others: Self) -> Self {
+        let select = |these, others| a.if_less(b, these, others);
+        Self {
+            least: select(self.least, others.least),
+            pushed: select(self.pushed, others.pushed),
+            pulled: select(self.pulled, others.pulled),
+        }
     }
 
     /// The residual at the pressure `k`, for the other terms of it: the change of the density in the step, less the
     /// compression.
     #[inline(always)]
-    pub fn residual(&self, k: f32, change: f32) -> f32 {
+    pub fn residual(&self, k: V, change: V) -> V {
+        let zero = V::splat(0.0);
         let (pushed, pulled) = (self.pushed + change, self.pulled + change);
-        if k > 0.0 || k == 0.0 && pushed > 0.0 {
-            pushed
-        } else if k < 0.0 || pulled < 0.0 {
-            pulled
-        } else {
-            0.0
-        }
+        let of_none = zero.if_less(pushed, pushed, pulled.if_less(zero, pulled, zero));
+        zero.if_less(k, pushed, k.if_less(zero, pulled, of_none))
     }
 
     /// The pressure after `k`, for the other terms of the residual.
     #[inline(always)]
-    pub fn next(&self, k: f32, change: f32, relaxation: f32, diagonal: f32) -> f32 {
-        let positive = k + relaxation * (self.pushed + change) / diagonal;
-        if positive > 0.0 {
-            return positive;
-        }
-        (k + relaxation * (self.pulled + change) / diagonal).min(0.0).max(self.least)
+    pub fn next(&self, k: V, change: V, relaxation: f32, diagonal: V) -> V {
+        let zero = V::splat(0.0);
+        let moved = |excess: V| k + (excess + change) * relaxation / diagonal;
+        let (positive, negative) = (moved(self.pushed), moved(self.pulled));
+        zero.if_less(positive, positive, smaller(negative, zero).max(self.least))
     }
 
     /// The error of `k` in units of the residual: zero if the pressure would have to leave its range to make the residual
     /// smaller.
     #[inline(always)]
-    pub fn error(&self, k: f32, residual: f32, diagonal: f32) -> f32 {
-        if k > self.least { residual.abs() } else { residual.max(diagonal * (self.least - k)) }
+    pub fn error(&self, k: V, residual: V, diagonal: V) -> V {
+        let size = residual.max(V::splat(0.0) - residual);
+        self.least.if_less(k, size, residual.max(diagonal * (self.least - k)))
     }
 }
 
@@ -101,12 +116,10 @@ mod tests {
 
     #[test]
     fn a_short_step_removes_less_of_a_large_excess() {
-        assert_eq!(removed(0.05, 0.001, 1.0), 0.05);
-        assert!((removed(0.1, 0.001, 1.0) - 0.052).abs() < 1e-6);
-        assert!((removed(0.1, 0.001, 0.2) - 0.004).abs() < 1e-6);
-        assert_eq!(removed(0.002, 0.0001, 0.0), 0.002);
-        assert_eq!(removed(0.02, 0.01, 0.0), 0.02, "the mean residual must see it");
-        assert_eq!(removed(-0.1, 0.001, 0.2), -0.1);
+        assert!((most_removed(0.001, 1.0) - 0.052).abs() < 1e-6);
+        assert!((most_removed(0.001, 0.2) - 0.004).abs() < 1e-6);
+        assert_eq!(most_removed(0.0001, 0.0), 0.002);
+        assert_eq!(most_removed(0.01, 0.0), 0.02, "the mean residual must see it");
     }
 
     #[test]

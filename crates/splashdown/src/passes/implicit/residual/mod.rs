@@ -59,6 +59,7 @@
 
 mod cpu;
 mod limits;
+mod update;
 
 use glam::{UVec4, Vec4};
 use splashdown_gpu::{PassDesc, WgslModule, bindings, wgsl};
@@ -69,7 +70,6 @@ use crate::kernel::{self, CubicSpline, Kernel, WendlandBlend};
 use crate::passes::group_sum;
 use crate::passes::neighbours::{NEIGHBOUR_ENTRIES, NEIGHBOURS};
 use crate::state::{PARAMS, Params, SOLVE, STATE, SolveState, StepState};
-use limits::Limits;
 
 const IMPORTS: &[WgslModule] = &[
     wgsl::INDEX,

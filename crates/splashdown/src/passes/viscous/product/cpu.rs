@@ -8,6 +8,14 @@ use super::ProductBindings;
 use crate::boundary::Images;
 use crate::pairs::{Differences, NearImages, NeighbourLists, Outputs, Projections, Sorted};
 
+/// Particles per task.
+const CHUNK: usize = 4096;
+
+/// The position and the preconditioned residual of every particle, whose fourth component is zero. Kept from iteration to
+/// iteration, because new memory is slow.
+#[derive(Default)]
+struct Points(Vec<[Vec4; 2]>);
+
 pub(super) fn product<const BODIES: bool>(scratch: &mut Scratch, buffers: ProductBindings<'_>) {
     let ProductBindings {
         params,
@@ -27,22 +35,25 @@ pub(super) fn product<const BODIES: bool>(scratch: &mut Scratch, buffers: Produc
     let sorted =
         Sorted::new(params.support_radius, grid, cell_start, positions).with_images(Images::new(params));
     let n = sorted.active_count();
-    let lists = scratch.get::<NeighbourLists<Root>>().of(sorted);
+    let mut points = std::mem::take(&mut scratch.get::<Points>().0);
+    points.resize(n, [Vec4::ZERO; 2]);
+    let each = points.par_iter_mut().zip(&positions[..n]).zip(viscous_residuals);
+    each.with_min_len(CHUNK).for_each(|((point, x), r)| *point = [*x, (r.w * *r).with_w(0.0)]);
+    let all = scratch.get::<NeighbourLists<Root>>();
+    // The particles keep their places for all iterations of a step.
+    let lists = if viscous.iteration == 0 { all.of(sorted) } else { all.kept(sorted) };
     let pass = Product {
         rate: state.dt * params.viscous_factor / (params.support_radius * params.support_radius),
         residuals: viscous_residuals,
-        points: (0..n)
-            .into_par_iter()
-            .with_min_len(4096)
-            .map(|j| [positions[j], (viscous_residuals[j].w * viscous_residuals[j].xyz()).extend(0.0)])
-            .collect(),
+        points: &points,
         friction: params.wall_friction,
         law: Law::new(params.support_radius, params.wall_friction),
     };
-    let formula = Projections(Differences(&pass.points));
+    let formula = Projections(Differences(pass.points));
     lists.for_each(sorted, Stored::<BODIES>(viscous_products), &formula, |i, sum, images| {
         pass.result(i, sum, images)
     });
+    scratch.get::<Points>().0 = points;
     let products = &viscous_products[..n];
     let tasks = products.par_chunks(GROUP * GROUPS).zip(residuals.par_chunks_mut(GROUPS));
     tasks.enumerate().for_each(|(task, (products, sums))| {
@@ -80,8 +91,8 @@ struct Product<'a> {
     /// Factor of the sums.
     rate: f32,
     residuals: &'a [Vec4],
-    /// The positions and the preconditioned residuals; the fourth component of these is zero.
-    points: Vec<[Vec4; 2]>,
+    /// See [`Points`].
+    points: &'a [[Vec4; 2]],
     friction: f32,
     law: Law<f32>,
 }
