@@ -19,10 +19,12 @@ mod keys;
 mod reorder;
 mod reorder_carried;
 mod scatter;
+mod sort_order;
 mod store_carried;
 
 pub use cell_counts::WGSL as CELL_COUNTS;
 pub use grid::{Grid, WGSL as GRID};
+pub(crate) use sort_order::sort_order;
 
 use glam::UVec2;
 use splashdown_gpu::scan::Scan;

@@ -5,12 +5,15 @@
 //! next to bodies is a lower bound. One particle in [`ONE_OF`] is evaluated per frame, others in each frame, and at least
 //! 2,048.
 
-use glam::{DVec3, Vec3};
+use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::boundary::{KernelPair, SolidDistance};
+use crate::cells::{Grid, sort_order};
 use crate::kernel::{Kernel, WendlandC2};
+use crate::pairs::{PointSum, Sorted, difference, dot, scaled, sums_at};
 use crate::scene::{KernelKind, Method, lattice_sum};
+use crate::simd::Register;
 use crate::state::Params;
 
 /// Of how many particles one is evaluated, and the bounds of their number: they limit the cost of a frame.
@@ -52,7 +55,6 @@ pub(super) fn density_error(
     let spacing = params.particle_spacing;
     let support = params.support_radius.max(SUPPORT * spacing);
     let ratio = support / spacing;
-    let sums = Sums::new(positions, support);
     let lattice = lattice_sum(Method::Wcsph, KernelKind::WendlandC2, ratio.into()) as f32;
     let weight = (spacing / support).powi(3) / lattice;
     let offset = spacing * SolidDistance::of_density(KernelPair::WendlandC2, ratio).offset;
@@ -60,13 +62,27 @@ pub(super) fn density_error(
     let stride = positions.len().div_ceil(most).max(1);
     let first = (turn % stride as u64) as usize;
     let chosen: Vec<usize> = (first..positions.len()).step_by(stride).collect();
-    let evaluate = |&i: &usize| {
-        let x = Vec3::from(positions[i]);
+    let with_images = |&i: &usize| {
+        let images = images(params, positions[i].into(), support).into_iter();
+        images.map(move |(position, sign)| Place { particle: i, position, sign })
+    };
+    let is_finite = |i: &&usize| Vec3::from(positions[**i]).is_finite();
+    let points: Vec<Place> = chosen.par_iter().filter(is_finite).flat_map_iter(with_images).collect();
+    let places: Vec<Vec3> = points.iter().map(|point| point.position).collect();
+    let sums = kernel_sums(params, positions, &places, support);
+    let mut rest = &sums[..];
+    let of_particles = points.chunk_by(|a, b| a.particle == b.particle).map(|points| {
+        let (sums, after) = rest.split_at(points.len());
+        rest = after;
+        (points, sums)
+    });
+    let of_particles: Vec<_> = of_particles.collect();
+    let evaluate = |&(points, sums): &(&[Place], &[[f32; 4]])| {
+        let Place { particle: i, position: x, .. } = points[0];
         let (mut density, mut slope) = (0.0, Vec3::ZERO);
-        for (image, sign) in images(params, x, support) {
-            let (w, gradient) = sums.at(image);
+        for (Place { sign, .. }, &[w, gx, gy, gz]) in points.iter().zip(sums) {
             density += weight * w;
-            slope += weight * sign * gradient;
+            slope += weight * *sign * Vec3::new(gx, gy, gz);
         }
         // Without the body: a half-space is more than a thin or convex body, and must not look like compressed fluid.
         let fluid = density;
@@ -84,9 +100,8 @@ pub(super) fn density_error(
         }
         (i, fluid, density, open)
     };
-    let evaluated: Vec<(usize, f32, f32, f32)> = chosen.par_iter().map(evaluate).collect();
-    let mut all: Vec<(usize, f32)> =
-        evaluated.iter().filter(|one| one.1.is_finite()).map(|&(i, fluid, ..)| (i, fluid)).collect();
+    let evaluated: Vec<(usize, f32, f32, f32)> = of_particles.par_iter().map(evaluate).collect();
+    let mut all: Vec<(usize, f32)> = evaluated.iter().map(|&(i, fluid, ..)| (i, fluid)).collect();
     let is_inner = |one: &&(usize, f32, f32, f32)| one.2 > SPRAY && one.3 < OPEN;
     let mut inner: Vec<(usize, f32)> =
         evaluated.iter().filter(is_inner).map(|&(i, _, density, _)| (i, density)).collect();
@@ -103,6 +118,15 @@ pub(super) fn density_error(
         largest_place: place(&all),
         deficit_place: place(&inner),
     }
+}
+
+/// A particle or one of its images.
+struct Place {
+    /// The index of the particle.
+    particle: usize,
+    position: Vec3,
+    /// The signs of the reflection.
+    sign: Vec3,
 }
 
 /// A point and its images behind the closed sides within the support, each with the signs of the reflection.
@@ -125,74 +149,41 @@ fn images(params: &Params, x: Vec3, support: f32) -> Vec<(Vec3, Vec3)> {
     found
 }
 
-/// Sums over the particles near a point.
-struct Sums {
-    support: f32,
-    low: DVec3,
-    /// Cells along each axis.
-    cells: [u64; 3],
-    /// The cell of each particle, ascending.
-    keys: Vec<u64>,
-    /// Positions in this order.
-    positions: Vec<Vec3>,
+/// At each point the sum of W H^3 over the particles, and its gradient times H^4.
+fn kernel_sums(params: &Params, positions: &[[f32; 3]], points: &[Vec3], support: f32) -> Vec<[f32; 4]> {
+    // Particles and points beyond the box are in its outermost cells.
+    let grid = Grid::new(params.domain_min, params.domain_max, support)
+        .expect("the support is not smaller than that of the grid of the solver");
+    let finite: Vec<Vec3> = positions.iter().map(|&x| Vec3::from(x)).filter(|x| x.is_finite()).collect();
+    let (order, cell_start) = sort_order(&grid, &finite);
+    let sorted: Vec<Vec4> = order.iter().map(|&i| finite[i as usize].extend(0.0)).collect();
+    let pass = KernelSum { positions: &sorted, scale: 1.0 / support };
+    sums_at(Sorted::new(support, &grid, &cell_start, &sorted), points, &pass)
 }
 
-impl Sums {
-    fn new(positions: &[[f32; 3]], support: f32) -> Self {
-        let finite = || positions.iter().map(|&x| Vec3::from(x)).filter(|x| x.is_finite());
-        let low = finite().fold(Vec3::INFINITY, Vec3::min);
-        let high = finite().fold(Vec3::NEG_INFINITY, Vec3::max);
-        let mut sums =
-            Self { support, low: low.as_dvec3(), cells: [1; 3], keys: Vec::new(), positions: Vec::new() };
-        if low.cmple(high).all() {
-            // Fewer than a million cells along an axis, so that the product fits into 64 bits.
-            sums.cells = ((high - low) / support).to_array().map(|size| (size as u64).min(1_000_000) + 1);
+/// The sum of the kernel, and of its gradient.
+struct KernelSum<'a> {
+    positions: &'a [Vec4],
+    /// 1 / H
+    scale: f32,
+}
+
+impl PointSum<3, 4> for KernelSum<'_> {
+    #[inline(always)]
+    fn load(&self, j: usize) -> [f32; 3] {
+        self.positions[j].truncate().to_array()
+    }
+
+    #[inline(always)]
+    fn pair<V: Register>(&self, x: [V; 3]) -> impl Fn([V; 3]) -> [V; 4] {
+        let scale = V::splat(self.scale);
+        #[inline(always)]
+        move |x_j| {
+            let d = scaled(scale, difference(x, x_j));
+            let q = dot(d, d).sqrt();
+            let [gx, gy, gz] = scaled(WendlandC2::g(q), d);
+            [WendlandC2::w(q), gx, gy, gz]
         }
-        let mut order: Vec<(u64, u32)> = positions
-            .par_iter()
-            .enumerate()
-            .map(|(i, &x)| (sums.key(sums.cell(x.into())), i as u32))
-            .collect();
-        order.par_sort_unstable();
-        sums.keys = order.iter().map(|one| one.0).collect();
-        sums.positions = order.iter().map(|one| Vec3::from(positions[one.1 as usize])).collect();
-        sums
-    }
-
-    fn cell(&self, x: Vec3) -> [i64; 3] {
-        ((x.as_dvec3() - self.low) / f64::from(self.support)).to_array().map(|at| at.floor() as i64)
-    }
-
-    fn key(&self, cell: [i64; 3]) -> u64 {
-        let clamped = [0, 1, 2].map(|axis| cell[axis].clamp(0, self.cells[axis] as i64 - 1) as u64);
-        (clamped[2] * self.cells[1] + clamped[1]) * self.cells[0] + clamped[0]
-    }
-
-    /// The sum of W H^3 and its gradient with respect to the point, times H^4.
-    fn at(&self, x: Vec3) -> (f32, Vec3) {
-        let [cx, cy, cz] = self.cell(x);
-        let scale = 1.0 / self.support;
-        let (mut sum, mut gradient) = (0.0, Vec3::ZERO);
-        for (dz, dy) in (-1..=1).flat_map(|dz| (-1..=1).map(move |dy| (dz, dy))) {
-            let (y, z) = (cy + dy, cz + dz);
-            let is_row = |at: i64, axis: usize| (0..self.cells[axis] as i64).contains(&at);
-            let last = self.cells[0] as i64 - 1;
-            if !is_row(y, 1) || !is_row(z, 2) || cx < -1 || cx > last + 1 {
-                continue;
-            }
-            let [from, to] = [(cx - 1).max(0), (cx + 1).min(last)].map(|x| self.key([x, y, z]));
-            let begin = self.keys.partition_point(|&key| key < from);
-            let end = begin + self.keys[begin..].partition_point(|&key| key <= to);
-            for neighbour in &self.positions[begin..end] {
-                let d = (x - *neighbour) * scale;
-                let q = d.length();
-                if q < 1.0 {
-                    sum += WendlandC2::w(q);
-                    gradient += WendlandC2::g(q) * d;
-                }
-            }
-        }
-        (sum, gradient)
     }
 }
 

@@ -4,7 +4,8 @@ use glam::{Vec3, Vec4};
 
 use super::SurfaceError;
 use super::SurfaceParams;
-use super::reconstruct::{grid_over, sort_order};
+use super::reconstruct::grid_over;
+use crate::cells::sort_order;
 use crate::pairs::{self, PointSum, Sorted, difference, dot};
 use crate::simd::Register;
 

@@ -6,9 +6,10 @@ use splashdown_io::{Attribute, Particles};
 
 use super::classify::Links;
 use super::{LINK, MAX_BLOB, droplet_radius};
+use crate::cells::sort_order;
 use crate::pairs::Sorted;
 use crate::surface::components::{join, root};
-use crate::surface::reconstruct::{grid_over, sort_order};
+use crate::surface::reconstruct::grid_over;
 use crate::surface::{SurfaceError, SurfaceParams};
 
 /// The name of the attribute of droplets in files: their diameter in m.
