@@ -151,10 +151,13 @@ fn images(params: &Params, x: Vec3, support: f32) -> Vec<(Vec3, Vec3)> {
 
 /// At each point the sum of W H^3 over the particles, and its gradient times H^4.
 fn kernel_sums(params: &Params, positions: &[[f32; 3]], points: &[Vec3], support: f32) -> Vec<[f32; 4]> {
-    // Particles and points beyond the box are in its outermost cells.
-    let grid = Grid::new(params.domain_min, params.domain_max, support)
-        .expect("the support is not smaller than that of the grid of the solver");
     let finite: Vec<Vec3> = positions.iter().map(|&x| Vec3::from(x)).filter(|x| x.is_finite()).collect();
+    // A box around the particles, because that of the domain may be much larger. What is beyond it, images and particles
+    // outside the domain, is in the outermost cells.
+    let inside = |x: &Vec3| x.clamp(params.domain_min, params.domain_max);
+    let low = finite.iter().map(inside).fold(params.domain_max, Vec3::min);
+    let high = finite.iter().map(inside).fold(low, Vec3::max);
+    let grid = Grid::new(low, high, support).expect("no smaller cells and no larger box than the solver's");
     let (order, cell_start) = sort_order(&grid, &finite);
     let sorted: Vec<Vec4> = order.iter().map(|&i| finite[i as usize].extend(0.0)).collect();
     let pass = KernelSum { positions: &sorted, scale: 1.0 / support };
@@ -210,6 +213,30 @@ mod tests {
     fn a_lattice_between_walls_has_the_rest_density_everywhere() {
         let error = error(1.0);
         assert!(error.excess < 1e-3 && error.deficit < 1e-3, "{error:?}");
+    }
+
+    #[test]
+    fn particles_outside_and_a_large_domain_do_not_matter() {
+        let at = |k: usize| [k % 8, k / 64, k / 8 % 8].map(|n| n as f32 + 0.5);
+        let mut positions: Vec<[f32; 3]> = (0..512).map(at).collect();
+        let params = |size: f32| Params {
+            domain_min: Vec3::ZERO,
+            domain_max: Vec3::splat(size),
+            particle_spacing: 1.0,
+            support_radius: 2.0,
+            closed: 0b010101,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let error = |positions: &[[f32; 3]], size| density_error(&params(size), positions, 0, &|_| None);
+        let alone = error(&positions, 20.0);
+        assert!(alone.largest < 1e-3, "{alone:?}");
+        // A grid of this domain would need 5e14 cells.
+        assert_eq!(error(&positions, 1e5), alone);
+        positions.extend([[f32::NAN; 3], [-1e30; 3], [3.0, 1e30, 3.0]]);
+        assert_eq!(error(&positions, 20.0).largest, alone.largest);
+        positions.push([2.6; 3]);
+        assert!(error(&positions, 20.0).largest > 0.1, "control: one more particle inside");
+        assert_eq!(error(&[], 20.0).largest, 0.0);
     }
 
     #[test]
