@@ -6,7 +6,8 @@ use std::collections::HashMap;
 use crate::{Binding, Slot, WgslModule, wgsl};
 
 /// What the CPU code of passes keeps in an executor from one dispatch to the next: one value per type. A pass may not
-/// rely on it: it has to check that a value belongs to the contents of its buffers.
+/// rely on it: it has to know that a value belongs to the contents of its buffers, by comparing them, or from a
+/// counter in them such as the iteration of a solve.
 #[derive(Default)]
 pub struct Scratch {
     values: HashMap<TypeId, Box<dyn Any + Send + Sync>>,

@@ -66,8 +66,8 @@ pub(super) fn density_error(
         let images = images(params, positions[i].into(), support).into_iter();
         images.map(move |(position, sign)| Place { particle: i, position, sign })
     };
-    let is_finite = |i: &&usize| Vec3::from(positions[**i]).is_finite();
-    let points: Vec<Place> = chosen.par_iter().filter(is_finite).flat_map_iter(with_images).collect();
+    let counts = |i: &&usize| is_near(params, positions[**i].into(), support);
+    let points: Vec<Place> = chosen.par_iter().filter(counts).flat_map_iter(with_images).collect();
     let places: Vec<Vec3> = points.iter().map(|point| point.position).collect();
     let sums = kernel_sums(params, positions, &places, support);
     let mut rest = &sums[..];
@@ -101,7 +101,8 @@ pub(super) fn density_error(
         (i, fluid, density, open)
     };
     let evaluated: Vec<(usize, f32, f32, f32)> = of_particles.par_iter().map(evaluate).collect();
-    let mut all: Vec<(usize, f32)> = evaluated.iter().map(|&(i, fluid, ..)| (i, fluid)).collect();
+    let mut all: Vec<(usize, f32)> =
+        evaluated.iter().filter(|one| one.1.is_finite()).map(|&(i, fluid, ..)| (i, fluid)).collect();
     let is_inner = |one: &&(usize, f32, f32, f32)| one.2 > SPRAY && one.3 < OPEN;
     let mut inner: Vec<(usize, f32)> =
         evaluated.iter().filter(is_inner).map(|&(i, _, density, _)| (i, density)).collect();
@@ -118,6 +119,11 @@ pub(super) fn density_error(
         largest_place: place(&all),
         deficit_place: place(&inner),
     }
+}
+
+/// True for points in the domain or within the support of it. Squares of distances between such points are finite.
+fn is_near(params: &Params, x: Vec3, support: f32) -> bool {
+    x.cmpge(params.domain_min - support).all() && x.cmple(params.domain_max + support).all()
 }
 
 /// A particle or one of its images.
@@ -151,15 +157,16 @@ fn images(params: &Params, x: Vec3, support: f32) -> Vec<(Vec3, Vec3)> {
 
 /// At each point the sum of W H^3 over the particles, and its gradient times H^4.
 fn kernel_sums(params: &Params, positions: &[[f32; 3]], points: &[Vec3], support: f32) -> Vec<[f32; 4]> {
-    let finite: Vec<Vec3> = positions.iter().map(|&x| Vec3::from(x)).filter(|x| x.is_finite()).collect();
+    let all = positions.iter().map(|&x| Vec3::from(x));
+    let near: Vec<Vec3> = all.filter(|&x| is_near(params, x, support)).collect();
     // A box around the particles, because that of the domain may be much larger. What is beyond it, images and particles
     // outside the domain, is in the outermost cells.
     let inside = |x: &Vec3| x.clamp(params.domain_min, params.domain_max);
-    let low = finite.iter().map(inside).fold(params.domain_max, Vec3::min);
-    let high = finite.iter().map(inside).fold(low, Vec3::max);
-    let grid = Grid::new(low, high, support).expect("no smaller cells and no larger box than the solver's");
-    let (order, cell_start) = sort_order(&grid, &finite);
-    let sorted: Vec<Vec4> = order.iter().map(|&i| finite[i as usize].extend(0.0)).collect();
+    let low = near.iter().map(inside).fold(params.domain_max, Vec3::min);
+    let high = near.iter().map(inside).fold(low, Vec3::max);
+    let grid = Grid::new(low, high, support).expect("a checked scene has few enough particles and cells");
+    let (order, cell_start) = sort_order(&grid, &near);
+    let sorted: Vec<Vec4> = order.iter().map(|&i| near[i as usize].extend(0.0)).collect();
     let pass = KernelSum { positions: &sorted, scale: 1.0 / support };
     sums_at(Sorted::new(support, &grid, &cell_start, &sorted), points, &pass)
 }
@@ -182,9 +189,10 @@ impl PointSum<3, 4> for KernelSum<'_> {
         let scale = V::splat(self.scale);
         #[inline(always)]
         move |x_j| {
-            let d = scaled(scale, difference(x, x_j));
-            let q = dot(d, d).sqrt();
-            let [gx, gy, gz] = scaled(WendlandC2::g(q), d);
+            // Scaled after the square, which is finite for the padding of the candidates.
+            let d = difference(x, x_j);
+            let q = dot(d, d).sqrt() * scale;
+            let [gx, gy, gz] = scaled(WendlandC2::g(q) * scale, d);
             [WendlandC2::w(q), gx, gy, gz]
         }
     }
@@ -237,6 +245,25 @@ mod tests {
         positions.push([2.6; 3]);
         assert!(error(&positions, 20.0).largest > 0.1, "control: one more particle inside");
         assert_eq!(error(&[], 20.0).largest, 0.0);
+    }
+
+    #[test]
+    fn small_spacings_have_the_same_result() {
+        let scaled = |scale: f32| {
+            let params = Params {
+                domain_max: Vec3::splat(8.0 * scale),
+                particle_spacing: scale,
+                support_radius: 2.0 * scale,
+                closed: 0b111111,
+                ..bytemuck::Zeroable::zeroed()
+            };
+            let at = |k: usize| [k % 8, k / 64, k / 8 % 8].map(|n| (n as f32 + 0.5) * scale);
+            let mut positions: Vec<[f32; 3]> = (0..512).map(at).collect();
+            positions.push([2.6 * scale; 3]);
+            density_error(&params, &positions, 0, &|_| None).largest
+        };
+        assert!(scaled(1.0) > 0.1);
+        assert!((scaled(1e-5) / scaled(1.0) - 1.0).abs() < 1e-3, "{} {}", scaled(1e-5), scaled(1.0));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Neighbour sums on the CPU, for solver, surface and foam.
+//! Neighbour sums on the CPU, for solver, surface, foam and monitor.
 //!
 //! A pass supplies the formula of one pair. The engine visits the neighbours:
 //!

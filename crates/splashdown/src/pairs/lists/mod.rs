@@ -4,8 +4,7 @@
 //! A visit of the candidates tests four times as many particles as there are neighbours, and a formula takes a square root.
 //! A list is made in one such visit, which also computes sums; a visit of a list takes a seventh of that. A
 //! neighbour takes 8 bytes: the factor and its index. Subtracting the positions again costs less than reading their
-//! difference. Images behind walls are few and take 16 bytes: the vector, and
-//! bits for index and reflection.
+//! difference. Images behind walls are few and take 16 bytes: the vector, and bits for index and reflection.
 //!
 //! The neighbours of four particles lie side by side (`list`), and registers contain a vector for each of the four. The sums
 //! of four particles are then complete without adding up lanes, no neighbours remain that do not fill a register, and the

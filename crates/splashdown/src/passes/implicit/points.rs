@@ -24,6 +24,11 @@ pub(super) struct Points {
 }
 
 impl Points {
+    /// The number of particles, if all arrays have it.
+    pub fn count(&self) -> Option<usize> {
+        Some(self.pressures.len()).filter(|&count| count == self.velocities.len())
+    }
+
     /// Stores the positions.
     pub fn begin(&mut self, positions: &[Vec4]) {
         self.pressures.resize(positions.len(), Vec4::ZERO);

@@ -44,7 +44,7 @@ pub(super) fn predict<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buff
     let n = sorted.active_count();
     let mut points = std::mem::take(scratch.get::<Points>());
     // The particles keep their places for all iterations of a step.
-    let is_first = solve.iteration == 0 || points.pressures.len() != n;
+    let is_first = solve.iteration == 0 || points.count() != Some(n);
     if is_first {
         points.begin(&positions[..n]);
     }

@@ -49,19 +49,19 @@ impl<const BODIES: bool> Update<'_, BODIES> {
     #[inline(always)]
     fn group<V: Register>(&self, first: usize, iterates: &mut [Vec4]) -> [Vec4; GROUP] {
         let particles = first..first + iterates.len();
-        let mut own = columns(iterates);
+        let mut old = columns(iterates);
         let stiffness = columns(&self.stiffness[particles.clone()]);
         let predicted = columns(&self.predicted[particles.clone()]);
         let solid = if BODIES { columns(&self.solid_gradients[particles]) } else { [[0.0; GROUP]; 4] };
         let mut terms = [[0.0; GROUP]; 4];
         for k in (0..GROUP).step_by(V::WIDTH) {
             let (iterate, contributions) =
-                self.registers::<V>(load(&own, k), load(&stiffness, k), load(&predicted, k), load(&solid, k));
-            store(iterate, &mut own, k);
+                self.registers::<V>(load(&old, k), load(&stiffness, k), load(&predicted, k), load(&solid, k));
+            store(iterate, &mut old, k);
             store(contributions, &mut terms, k);
         }
         let count = iterates.len();
-        iterates.copy_from_slice(&vectors(&own)[..count]);
+        iterates.copy_from_slice(&vectors(&old)[..count]);
         vectors(&terms)
     }
 
@@ -82,8 +82,9 @@ impl<const BODIES: bool> Update<'_, BODIES> {
             rate = rate + ((bx * ux + by * uy + bz * uz) - b_speed);
             gradient = [sx + bx, sy + by, sz + bz];
             normal = [sx + bx * 0.5, sy + by * 0.5, sz + bz * 0.5];
-            let size = bx * bx + by * by + bz * bz + b_speed * b_speed;
-            is_free = size.if_less(V::splat(f32::MIN_POSITIVE), one, zero);
+            let magnitude = |value: V| value.max(zero - value);
+            let largest = magnitude(bx).max(magnitude(by)).max(magnitude(bz)).max(magnitude(b_speed));
+            is_free = zero.if_less(largest, zero, one);
         }
         let square = |[x, y, z]: [V; 3]| x * x + y * y + z * z;
         let removed = smaller(excess, V::splat(most_removed(params.tolerance, solve.dt_ratio)));
@@ -101,8 +102,8 @@ impl<const BODIES: bool> Update<'_, BODIES> {
         }
         let residual = limits.residual(k, change_of_density);
         let scale = 1.0 / params.support_radius;
-        let squares = (square(gradient) + squares).max(V::splat(1e-6 * scale * scale));
-        let diagonal = squares * (dt * dt) + params.compressibility;
+        let sum = (square(gradient) + squares).max(V::splat(1e-6 * scale * scale));
+        let diagonal = sum * (dt * dt) + params.compressibility;
         let next = limits.next(k, change_of_density, solve.relaxation, diagonal);
         let new_change = next - k;
         let direction = direction * solve.beta + change;
