@@ -49,19 +49,23 @@ impl<const BODIES: bool> Update<'_, BODIES> {
     #[inline(always)]
     fn group<V: Register>(&self, first: usize, iterates: &mut [Vec4]) -> [Vec4; GROUP] {
         let particles = first..first + iterates.len();
-        let mut old = columns(iterates);
+        let mut iterate_columns = columns(iterates);
         let stiffness = columns(&self.stiffness[particles.clone()]);
         let predicted = columns(&self.predicted[particles.clone()]);
         let solid = if BODIES { columns(&self.solid_gradients[particles]) } else { [[0.0; GROUP]; 4] };
         let mut terms = [[0.0; GROUP]; 4];
         for k in (0..GROUP).step_by(V::WIDTH) {
-            let (iterate, contributions) =
-                self.registers::<V>(load(&old, k), load(&stiffness, k), load(&predicted, k), load(&solid, k));
-            store(iterate, &mut old, k);
+            let (iterate, contributions) = self.registers::<V>(
+                load(&iterate_columns, k),
+                load(&stiffness, k),
+                load(&predicted, k),
+                load(&solid, k),
+            );
+            store(iterate, &mut iterate_columns, k);
             store(contributions, &mut terms, k);
         }
         let count = iterates.len();
-        iterates.copy_from_slice(&vectors(&old)[..count]);
+        iterates.copy_from_slice(&vectors(&iterate_columns)[..count]);
         vectors(&terms)
     }
 
