@@ -31,6 +31,7 @@ mod validate;
 mod watch;
 mod web;
 mod wheel;
+mod window_picture;
 
 use std::process::ExitCode;
 
@@ -51,7 +52,7 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   guide             build the user guide as HTML into target/guide and check its links
   build-times [--jobs N]
                     measure builds of the demo, the whole program and the library into an empty folder
-  pictures [SCENE]  render the pictures of the README and the gallery
+  pictures [SCENE]  render the pictures of the README and the gallery (window: the window)
   cycles [--samples N] [--again] [--dev]
                     draw ten frames with the program and with Cycles, the path tracer of Blender, installed from PyPI,
                     and write the pairs and their differences into the guide (--samples: of Cycles, 64 by default;

@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 
 use crate::process::{self, say};
-use crate::setup;
+use crate::{setup, window_picture};
 
 /// One picture of the README.
 struct Shown {
@@ -51,22 +51,22 @@ const THUMBNAILS: [(&str, u32); 9] = [
 /// The scene and the frame that the guide shows with `wcsph` beside the picture with `dfsph`.
 const WITH_BOTH_SOLVERS: (&str, u32) = ("dam-break", 101);
 
+/// The name of the picture of the window among the arguments.
+const WINDOW: &str = "window";
+
 /// The film of the web page for browsers without WebGPU: scene and last frame. With frame 0 it has 52 pictures.
 const FILM: (&str, u32) = ("dam-break-small", 51);
 /// Its pictures per second.
 const FILM_RATE: u32 = 12;
 
-/// The command `pictures`. Arguments are names of scenes; without any, all pictures are rendered.
+/// The command `pictures`. Arguments are names of scenes, or `window`; without any, all pictures are rendered.
 pub fn run(arguments: &[String]) -> Result<()> {
     let wanted = |scene: &str| arguments.is_empty() || arguments.iter().any(|argument| argument == scene);
-    let scenes =
-        || PICTURES.iter().map(|(scene, _)| *scene).chain(THUMBNAILS.iter().map(|(scene, _)| *scene));
-    let known = |argument: &&String| scenes().any(|scene| scene == argument.as_str());
-    ensure!(
-        arguments.iter().all(|argument| known(&argument)),
-        "pictures takes names of scenes: {}",
-        scenes().collect::<Vec<_>>().join(", ")
-    );
+    let shown = PICTURES.iter().map(|(scene, _)| *scene);
+    let names: Vec<_> = shown.chain(THUMBNAILS.iter().map(|(scene, _)| *scene)).chain([WINDOW]).collect();
+    if let Some(unknown) = arguments.iter().find(|argument| !names.contains(&argument.as_str())) {
+        bail!("there is no picture {unknown:?}; allowed: {}", names.join(", "));
+    }
     setup::ensure_requirements()?;
     let binary = process::build_release()?;
     for (scene, pictures) in PICTURES.iter().filter(|(scene, _)| wanted(scene)) {
@@ -108,6 +108,9 @@ pub fn run(arguments: &[String]) -> Result<()> {
         if *scene == FILM.0 {
             film(&binary, &out)?;
         }
+    }
+    if wanted(WINDOW) {
+        window_picture::draw(&binary)?;
     }
     Ok(())
 }
