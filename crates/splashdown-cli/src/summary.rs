@@ -112,8 +112,7 @@ fn unconverged(steps: u32) -> String {
 }
 
 fn volume(summary: &Summary) -> String {
-    let first = summary.particle_volume;
-    let last = first * grown(&summary.stats);
+    let [first, last] = summary.particle_volume;
     let particles = if last == first {
         format!("{} (particles)", human::volume(first))
     } else {
@@ -129,14 +128,6 @@ fn volume(summary: &Summary) -> String {
             change(inside_last, last)
         ),
     }
-}
-
-/// The number of particles at the end over that at the start, which emitters, sinks and open sides change.
-fn grown(stats: &Stats) -> f64 {
-    let gone = f64::from(stats.drained) + f64::from(stats.escaped) + f64::from(stats.non_finite);
-    let last = f64::from(stats.particles);
-    let first = last + gone - f64::from(stats.emitted);
-    if first > 0.0 { last / first } else { 1.0 }
 }
 
 fn change(value: f64, reference: f64) -> String {

@@ -103,7 +103,7 @@ pub(crate) struct Numbers {
     simulated_per_wall: f64,
     density_error: f32,
     surface_volume: Option<[f64; 2]>,
-    particle_volume: f64,
+    particle_volume: [f64; 2],
     /// Of an implicit pressure.
     pressure: Option<PressureNumbers>,
 }

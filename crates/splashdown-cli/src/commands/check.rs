@@ -253,6 +253,8 @@ fn print_packing(packing: &Packing) {
     ));
     if packing.after.is_some() {
         console::print(format!("  initial packing: {packing}"));
+    } else if packing.is_overfull() {
+        console::note(format!("warning: {}\n", packing.overfull()));
     } else if !packing.is_sound() {
         console::print(
             "  initial packing: the run relaxes so many particles before its first step; not tried here",
@@ -315,7 +317,12 @@ fn particles(inventory: &Inventory, spacing: f32) -> String {
         words += &format!("; emitters add at most {}", human::count(inventory.emitted));
     }
     if inventory.removed > 0 {
-        words += &format!("; {} inside bodies are removed", human::count(inventory.removed));
+        let all = (inventory.particles + inventory.removed) as f64;
+        words += &format!(
+            "; {} inside bodies or within half a spacing of them are removed, {:.1} % of the fluid",
+            human::count(inventory.removed),
+            100.0 * inventory.removed as f64 / all
+        );
     }
     words
 }

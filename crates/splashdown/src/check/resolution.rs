@@ -17,6 +17,8 @@ const TOUCHING: f32 = 0.25;
 /// Particles on both sides of a solid thinner than this interact through it: the support of two spacings, less half a
 /// spacing on each side.
 const THIN_SOLID: f32 = 1.0;
+/// Below a body that is nearer to the floor there is no layer of particles, or one that cannot be replaced.
+const SEALED: f32 = 1.5;
 /// Narrower gaps and thinner pieces of fluid have too few particles across for a velocity profile.
 const NARROW: f32 = 3.0;
 /// Bodies with parts of one to three spacings that float in fluid whose density is integrated have been measured to sink up to
@@ -68,6 +70,9 @@ pub struct BodyWidths {
     /// It moves without a hinge, is lighter than the fluid, and the density of the fluid is integrated.
     #[serde(skip)]
     floats_in_continuity: bool,
+    /// The height in spacings above the floor of a light body in the fluid, if no particles fit below it.
+    #[serde(skip)]
+    sealed_at: Option<f32>,
 }
 
 /// A wave.
@@ -104,7 +109,7 @@ impl Resolution {
                 "{owner} is {spacings:.1} spacings across: a film of fewer than {NARROW} has no inner flow"
             ));
         }
-        for BodyWidths { owner, thickness, gap, floats_in_continuity } in &self.bodies {
+        for BodyWidths { owner, thickness, gap, floats_in_continuity, sealed_at } in &self.bodies {
             if let Some(thickness) = thickness.filter(|&thickness| thickness < THIN_SOLID) {
                 all.push(format!(
                     "{owner} has parts {thickness:.1} spacings thick: fluid on both sides interacts through parts thinner than \
@@ -117,6 +122,12 @@ impl Resolution {
                 all.push(format!(
                     "{owner} has parts {thickness:.1} spacings thick: with density = \"continuity\" bodies this thin have floated up to \
                      twice too deep, and method = \"dfsph\" is more accurate"
+                ));
+            }
+            if let Some(height) = sealed_at {
+                all.push(format!(
+                    "{owner} is lighter than the fluid around it and {height:.1} spacings above the floor: no particle fits below \
+                     it, so that no pressure lifts it in water at rest; leave two spacings"
                 ));
             }
             if let Some(gap) = gap.filter(|&gap| gap < NARROW) {
@@ -187,8 +198,7 @@ fn bodies(scene: &Scene) -> Result<Vec<BodyWidths>, BodyError> {
         Motion::Dynamic { density, hinge: None, .. } => density < scene.fluid.material.rest_density,
         _ => false,
     };
-    let floating: Vec<bool> =
-        scene.bodies.iter().map(|body| is_integrated && has_gravity && floats(body)).collect();
+    let floating: Vec<bool> = scene.bodies.iter().map(|body| has_gravity && floats(body)).collect();
     let named = scene.bodies.iter().map(|body| (owner("body", &body.name, &body.mesh), body));
     let (mut owners, mut surfaces) = (Vec::new(), Vec::new());
     for (owner, body) in named {
@@ -202,14 +212,33 @@ fn bodies(scene: &Scene) -> Result<Vec<BodyWidths>, BodyError> {
     let [low, high] = closed_bounds(domain.min, domain.max, bits);
     let found = widths(&surfaces, low, high, TOUCHING * spacing, WIDEST * spacing);
     let in_spacings = |width: Option<f32>| width.map(|width| width / spacing);
-    let each =
-        owners.into_iter().zip(found).zip(floating).map(|(((owner, is_shell), widths), floats)| BodyWidths {
+    let heights: Vec<_> = surfaces.iter().map(|surface| height_above_floor(scene, surface)).collect();
+    let each = owners.into_iter().zip(found).zip(floating).zip(heights).map(
+        |((((owner, is_shell), widths), floats), height)| BodyWidths {
             owner,
             thickness: in_spacings(widths.thickness.filter(|_| !is_shell)),
             gap: in_spacings(widths.gap),
-            floats_in_continuity: floats,
-        });
+            floats_in_continuity: floats && is_integrated,
+            sealed_at: height.filter(|&height| floats && height < SEALED),
+        },
+    );
     Ok(each.collect())
+}
+
+/// The height of the lowest point of a surface above the closed side to which gravity points, in spacings. `None` for one
+/// that does not meet a block of fluid.
+fn height_above_floor(scene: &Scene, surface: &Triangles) -> Option<f32> {
+    let points = || surface.iter().flatten().copied();
+    let (low, high) = (points().reduce(Vec3::min)?, points().reduce(Vec3::max)?);
+    let is_wet = scene.fluid.blocks.iter().any(|block| {
+        let (from, to) = block.shape.bounds();
+        low.cmplt(to).all() && high.cmpgt(from).all()
+    });
+    let axis = scene.gravity.abs().max_position();
+    let side = usize::from(scene.gravity[axis] > 0.0);
+    let height = if side == 0 { low - scene.domain.min } else { scene.domain.max - high };
+    let is_above_floor = is_wet && scene.domain.closed[axis][side];
+    is_above_floor.then(|| height[axis].max(0.0) / scene.fluid.particle_spacing)
 }
 
 /// The repaired triangles of a mesh at its initial pose, and whether it is a shell.
@@ -303,5 +332,25 @@ mod tests {
         let expected = 9.81 * 0.09 / std::f32::consts::TAU / 0.02;
         assert!((deep.length / expected - 1.0).abs() < 0.01, "{deep:?}");
         assert!((deep.amplitude - 0.5).abs() < 0.01, "{deep:?}");
+    }
+
+    #[test]
+    fn a_light_body_close_to_the_floor_is_reported() {
+        let found = |height: f32, density: f32, fluid: f32| {
+            let text = format!(
+                "[scene]\nname = \"raft\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[fluid]\n\
+                 particle_spacing = 0.025\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [{fluid}, 0.5, 1]\n\
+                 [[body]]\nname = \"raft\"\nmesh = \"cube\"\nscale = 0.2\nposition = [0.5, {}, 0.5]\n\
+                 motion = \"dynamic\"\ndensity = {density}\n",
+                0.1 + height
+            );
+            let scene = Scene::parse(&text, "raft.toml").unwrap_or_else(|errors| panic!("{errors}"));
+            let all = resolution(&scene).unwrap().too_coarse();
+            all.iter().any(|text| text.contains("0.4 spacings above the floor"))
+        };
+        assert!(found(0.01, 500.0, 1.0));
+        assert!(!found(0.05, 500.0, 1.0), "two spacings above the floor");
+        assert!(!found(0.01, 2000.0, 1.0), "heavier than water");
+        assert!(!found(0.01, 500.0, 0.3), "beside the fluid");
     }
 }

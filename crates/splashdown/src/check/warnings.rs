@@ -7,7 +7,7 @@ use crate::sample;
 use crate::scene::lattice::Sampler;
 use crate::scene::{
     DensityMode, Derived, InitialPressure, Method, Outlet, Quantity, Reported, Scene, Section, SinkRegion,
-    SurfaceTension, lattice, outlet,
+    SurfaceTension, outlet,
 };
 
 /// A scene with more steps than this takes days and gives a warning.
@@ -16,9 +16,6 @@ const MANY_STEPS: u64 = 10_000_000;
 /// density of a weakly compressible fluid varies by about 4 %.
 const SLOWEST_SOUND: f32 = 5.0;
 
-/// The part of the volume of a closed domain from which it counts as full.
-const FULL: f64 = 0.99;
-
 /// Warns of values that are valid but probably unintended, and refuses steps that are too long.
 pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Result<(), Reported> {
     let (fluid, solver) = (&root.section("fluid")?, &root.section("solver")?);
@@ -26,8 +23,10 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>, derived: &Derived) -> Res
     refuse_long_steps(scene, solver, derived)?;
     check_viscosity(scene, solver, derived);
     check_negative_pressure(scene, solver);
-    check_room(scene, root, solver);
-    check_surface_tension(scene, solver);
+    check_room(scene, root);
+    check_support(scene, root);
+    check_frames(scene, &root.section("scene")?);
+    check_surface_tension(scene, fluid, solver, derived);
     check_steps(scene, solver, derived);
     check_sound(scene, solver, derived);
     check_initial_pressure(scene, fluid);
@@ -66,13 +65,24 @@ fn refuse_long_steps(scene: &Scene, solver: &Section<'_>, derived: &Derived) -> 
 }
 
 /// Warns of what surface tension cannot do, and of a contact angle without a wall.
-fn check_surface_tension(scene: &Scene, solver: &Section<'_>) {
+fn check_surface_tension(scene: &Scene, fluid: &Section<'_>, solver: &Section<'_>, derived: &Derived) {
+    let is_given = fluid.has("surface_tension") && scene.fluid.material.surface_tension > 0.0;
+    if scene.solver.surface_tension == SurfaceTension::None && is_given {
+        let message =
+            "fluid.surface_tension has no effect: the solver has no model of surface tension".to_owned();
+        let hint = match scene.solver.method {
+            Method::Mueller2003 => "set solver.surface_tension = \"mueller2003\"",
+            _ => "set solver.surface_tension = \"csf\"",
+        };
+        fluid.warn("surface_tension", message, hint);
+    }
     if scene.solver.surface_tension == SurfaceTension::Csf && scene.solver.method == Method::Dfsph {
         let message = "the pressure of dfsph is never negative: with surface_tension = \"csf\" drops hold \
                        together, and water under a trough or in a neck tears"
             .to_owned();
         let hint = "for capillary waves, bridges and thin threads set accuracy = \"engineering\"";
         solver.warn("surface_tension", message, hint);
+        check_capillary_length(scene, solver, derived);
     }
     if scene.solver.surface_tension == SurfaceTension::Csf && !scene.bodies.is_empty() {
         let message =
@@ -84,6 +94,27 @@ fn check_surface_tension(scene: &Scene, solver: &Section<'_>) {
     if solver.has("contact_angle") && !scene.domain.closed.as_flattened().contains(&true) {
         let message = "solver.contact_angle has no effect: all sides of the domain are open".to_owned();
         solver.warn("contact_angle", message, "close a side, or leave it out");
+    }
+}
+
+/// The height of fluid over its capillary length below which surface tension dominates.
+const CAPILLARY_LENGTHS: f32 = 3.0;
+/// Below this acceleration in m/s^2 drops are not held by a vessel.
+const WEAKEST_GRAVITY: f32 = 0.1;
+
+/// Warns of small vessels, where the surface tension of `dfsph` creates energy.
+fn check_capillary_length(scene: &Scene, solver: &Section<'_>, derived: &Derived) {
+    let material = &scene.fluid.material;
+    let length = (material.surface_tension / (material.rest_density * scene.gravity.length())).sqrt();
+    let is_small = derived.head > 0.0 && derived.head < CAPILLARY_LENGTHS * length;
+    if is_small && scene.gravity.length() > WEAKEST_GRAVITY {
+        let message = format!(
+            "the fluid is at most {:.1e} m high, {:.1} capillary lengths: dfsph with surface_tension = \"csf\" creates energy \
+             there, and the fluid can boil",
+            derived.head,
+            derived.head / length
+        );
+        solver.warn("surface_tension", message, "set accuracy = \"engineering\"");
     }
 }
 
@@ -181,7 +212,7 @@ fn check_volume(scene: &Scene, fluid: &Section<'_>) {
 
 /// Warns of a surface that is pulled together.
 fn check_negative_pressure(scene: &Scene, solver: &Section<'_>) {
-    if scene.solver.pulls_surfaces_together() && !is_full(scene) {
+    if scene.solver.pulls_surfaces_together() && !scene.is_full() {
         let message = "with density = \"summation\" negative pressures pull a free surface together: the sum of a particle there \
                        lacks neighbours"
             .to_owned();
@@ -215,41 +246,55 @@ fn check_viscosity(scene: &Scene, solver: &Section<'_>, derived: &Derived) {
     solver.warn("method", message, "method = \"dfsph\" integrates the viscosity implicitly, in longer steps");
 }
 
-fn is_closed(scene: &Scene) -> bool {
-    scene.domain.closed.as_flattened().iter().all(|&closed| closed)
+/// A run that is longer than its scene by more than this part gives a warning.
+const LONGER: f32 = 0.05;
+
+/// Warns of frames that do not fit into the duration.
+fn check_frames(scene: &Scene, section: &Section<'_>) {
+    let simulated = scene.frame_count() as f32 * scene.frame_duration();
+    if simulated > (1.0 + LONGER) * scene.duration {
+        let message = format!(
+            "the run simulates {simulated} s instead of {} s: {} whole frames of {} s",
+            scene.duration,
+            scene.frame_count(),
+            scene.frame_duration()
+        );
+        section.warn(
+            "frame_rate",
+            message,
+            "raise frame_rate, or set duration to a multiple of 1 / frame_rate",
+        );
+    }
 }
 
-/// The numbers of initial particles and of particles for which the domain has room. Only the particles of blocks are
-/// counted, with those that bodies displace: filling meshes takes time.
-fn filling(scene: &Scene) -> [f64; 2] {
-    let particle = f64::from(scene.fluid.particle_spacing).powi(3);
-    let room = (scene.domain.max - scene.domain.min).as_dvec3().element_product() / particle;
-    [lattice::count(&scene.domain, &scene.fluid) as f64, room]
+/// Warns of fluid that gravity takes out of the domain: all sides to which it points are open.
+fn check_support(scene: &Scene, root: &Section<'_>) {
+    let side_of = |axis: usize| usize::from(scene.gravity[axis] > 0.0);
+    let mut below = (0..3).filter(|&axis| scene.gravity[axis] != 0.0).peekable();
+    let is_held = below.peek().is_none() || !scene.bodies.is_empty() || !scene.emitters.is_empty();
+    if is_held || below.any(|axis| scene.domain.closed[axis][side_of(axis)]) {
+        return;
+    }
+    let axis = scene.gravity.abs().max_position();
+    let [x, y, z] = scene.gravity.to_array();
+    let side = format!("{}_{}", ["x", "y", "z"][axis], ["min", "max"][side_of(axis)]);
+    let message = format!(
+        "gravity [{x}, {y}, {z}] points at the open side {side}, and no closed side or body is below the fluid"
+    );
+    root.warn("domain", message, &format!("close {side}, or check the sign of scene.gravity"));
 }
 
-/// True if fluid fills the closed domain, so that it has no free surface.
-fn is_full(scene: &Scene) -> bool {
-    let [initial, room] = filling(scene);
-    is_closed(scene) && initial >= FULL * room
-}
-
-/// Warns of closed domains that the fluid fills.
-fn check_room(scene: &Scene, root: &Section<'_>, solver: &Section<'_>) {
-    if !is_closed(scene) || !scene.sinks.is_empty() {
+/// Warns of emitters that overfill a closed domain.
+fn check_room(scene: &Scene, root: &Section<'_>) {
+    if !scene.is_closed() || !scene.sinks.is_empty() {
         return;
     }
     let particle = f64::from(scene.fluid.particle_spacing).powi(3);
-    let [initial, room] = filling(scene);
+    let [initial, room] = scene.filling();
     // Without a folder no file is opened.
     let opens_files = scene.emitters.iter().any(|emitter| matches!(emitter.outlet, Outlet::Mesh(_)));
     let is_known = root.has_folder() || !opens_files;
     let emitted = if is_known { Built::of(scene).emitted(scene).unwrap_or_default().0 as f64 } else { 0.0 };
-    if scene.solver.method == Method::Dfsph && is_full(scene) {
-        let message = "the fluid fills the closed domain: without a free surface nothing determines the level of an implicit \
-                       pressure, and fluid that moves can end the run"
-            .to_owned();
-        solver.warn("method", message, "use method = \"wcsph\", open a side, or leave a layer of air");
-    }
     if emitted > 0.0 && initial + emitted > room {
         let message = format!(
             "the emitters add {:.3e} m^3 to a closed domain in which {:.3e} m^3 are free",

@@ -15,6 +15,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use splashdown_io::Particles;
 
+use super::area;
 use crate::scene::{MIN_SPEED, Scene, SurfaceTension};
 use crate::state::Params;
 
@@ -42,9 +43,12 @@ pub struct EnergyBalance {
     /// Kinetic and potential energy above those of the start and the sources: energy of compression that overlapping
     /// particles have released. Negative in a sound run.
     pub released: f64,
-    /// The energy that could become kinetic: that of the start above fluid at rest on the lowest level, and the sizes of
-    /// all work since. The scale of errors.
+    /// The energy that could become kinetic: that of the start above fluid at rest on the lowest level, that of the surface,
+    /// and the sizes of all work since. The scale of errors.
     pub available: f64,
+    /// An estimate of the energy of the surface at the start with `surface_tension = "csf"`. It can become kinetic, and is not
+    /// a term of the balance.
+    pub surface: f64,
 }
 
 impl EnergyBalance {
@@ -60,10 +64,11 @@ impl EnergyBalance {
         self.kinetic + self.potential + self.elastic
     }
 
-    /// The energy that was created without a source or released by overlapping particles, as a fraction of what is
-    /// available: zero in a sound run.
+    /// The energy that was created without a source or released by overlapping particles, beyond that of the surface, as a
+    /// fraction of what is available: zero in a sound run.
     pub fn gain(&self) -> f64 {
-        (-self.dissipated).max(self.released).max(0.0) / self.available.max(f64::MIN_POSITIVE)
+        let created = (-self.dissipated).max(self.released) - self.surface;
+        created.max(0.0) / self.available.max(f64::MIN_POSITIVE)
     }
 }
 
@@ -98,8 +103,10 @@ pub(super) struct EnergyAccount {
     sources: Vec<Source>,
     /// Kinetic energy per mass that always counts as available, in m^2/s^2.
     least: f64,
-    /// That of the surface in J/kg.
-    surface_energy: f64,
+    /// The part of it that attraction between particles or by bodies can release.
+    attraction: f64,
+    /// The tension of the surface in N/m with `csf`, and the cosine of the contact angle.
+    tension: [f64; 2],
     /// Total energy at the start, and its part without compression, in J.
     start: Option<[f64; 2]>,
     balance: EnergyBalance,
@@ -132,6 +139,10 @@ impl EnergyAccount {
             position: emitter.position.as_dvec3(),
             speed: emitter.speed.into(),
         };
+        let has_csf = scene.solver.surface_tension == SurfaceTension::Csf;
+        // The energy of csf follows from the area of the surface, that of other models only from a bound.
+        let attraction = adhesion_energy(scene) + if has_csf { 0.0 } else { tension_energy(scene) };
+        let tension = if has_csf { scene.fluid.material.surface_tension.into() } else { 0.0 };
         Self {
             mass: params.particle_mass.into(),
             gravity,
@@ -139,8 +150,9 @@ impl EnergyAccount {
             shaking: (params.oscillation.as_dvec3(), params.oscillation_rate.into()),
             sources: scene.emitters.iter().map(source).collect(),
             least: 0.5 * (0.05 * reference_speed).max(noticeable_speed(scene, reference_speed)).powi(2)
-                + surface_energy(scene),
-            surface_energy: surface_energy(scene),
+                + attraction,
+            attraction,
+            tension: [tension, f64::from(scene.solver.contact_angle).to_radians().cos()],
             start: None,
             balance: EnergyBalance::default(),
             before: None,
@@ -150,7 +162,7 @@ impl EnergyAccount {
 
     /// Before the first frame: the reference speed in m/s without outliers.
     pub fn set_reference_speed(&mut self, speed: f64) {
-        self.least = self.least.min(0.5 * (0.05 * speed).powi(2) + self.surface_energy);
+        self.least = self.least.min(0.5 * (0.05 * speed).powi(2) + self.attraction);
     }
 
     pub fn save(&self) -> SavedEnergy {
@@ -201,7 +213,13 @@ impl EnergyAccount {
             }
             None => {
                 let least = self.least * self.mass * particles.positions.len() as f64;
-                balance.available = balance.kinetic + balance.potential + least;
+                let [tension, cosine] = self.tension;
+                balance.surface = if tension > 0.0 {
+                    area::surface_energy(&self.params, &particles.positions, tension, cosine)
+                } else {
+                    0.0
+                };
+                balance.available = balance.kinetic + balance.potential + balance.surface + least;
                 self.start = Some([balance.total(), balance.kinetic + balance.potential]);
             }
         }
@@ -300,16 +318,24 @@ struct Change {
     removed: f64,
 }
 
-/// The energy per mass in m^2/s^2 that surface tension and the adhesion of bodies can release, which the balance does not
-/// contain: that of a drop of two spacings, and of a fall through the range of the adhesion.
-pub(super) fn surface_energy(scene: &Scene) -> f64 {
+/// The energy per mass in m^2/s^2 that surface tension and the adhesion of bodies can release to a particle.
+pub(super) fn attraction_energy(scene: &Scene) -> f64 {
+    tension_energy(scene) + adhesion_energy(scene)
+}
+
+/// That of the surface of a drop of two spacings, per mass in m^2/s^2.
+fn tension_energy(scene: &Scene) -> f64 {
     let (spacing, material) = (scene.fluid.particle_spacing, &scene.fluid.material);
-    let tension = match scene.solver.surface_tension {
+    match scene.solver.surface_tension {
         SurfaceTension::None => 0.0,
-        _ => 2.0 * material.surface_tension / (material.rest_density * spacing),
-    };
+        _ => f64::from(2.0 * material.surface_tension / (material.rest_density * spacing)),
+    }
+}
+
+/// That of a fall through the range of the adhesion of bodies, per mass in m^2/s^2.
+fn adhesion_energy(scene: &Scene) -> f64 {
     let adhesion = scene.bodies.iter().map(|body| body.adhesion).fold(0.0, f32::max);
-    f64::from(tension + adhesion * scene.solver.support_radius(spacing))
+    f64::from(adhesion * scene.solver.support_radius(scene.fluid.particle_spacing))
 }
 
 fn remember(time: f64, particles: &Particles, elastic: Vec<f64>, bodies: f64) -> Before {

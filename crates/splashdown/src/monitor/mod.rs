@@ -15,6 +15,7 @@
 //! * u is the speed of the fastest point of scripted bodies that came near the fluid so far, and of dynamic bodies at the
 //!   start; a wall that moves at u reflects fluid at 2 u. A jump does not count as a speed: it would allow any.
 
+mod area;
 mod density;
 mod energy;
 mod levels;
@@ -157,7 +158,7 @@ impl Monitor {
         let shaking = scene.domain.oscillation.map_or(0.0, |oscillation| oscillation.max_speed());
         let initial = ((derived.reference_speed - shaking).powi(2) - 4.0 * fall).max(0.0);
         let emitted = scene.emitters.iter().map(|emitter| emitter.speed).fold(0.0, f32::max);
-        let attraction = 4.0 * energy::surface_energy(scene);
+        let attraction = 4.0 * energy::attraction_energy(scene);
         let noticeable = energy::noticeable_speed(scene, derived.reference_speed.into());
         let with = |initial: f32| {
             let square = f64::from(initial + 2.0 * fall.max(whole)) + attraction;

@@ -248,8 +248,8 @@ pub struct Summary {
     pub level: Level,
     /// Volume of the first and the last surface with its droplets in m^3.
     pub volume: Option<[f64; 2]>,
-    /// The volume of the particles at the start, count times `particle_spacing^3`, in m^3.
-    pub particle_volume: f64,
+    /// The volume of the particles at the start and at the end, count times `particle_spacing^3`, in m^3.
+    pub particle_volume: [f64; 2],
     /// Time per pass, if enabled.
     pub timings: Timings,
 }

@@ -203,8 +203,12 @@ impl Run {
         self.pending_events.extend(std::mem::take(&mut self.probe_warnings).into_iter().map(Event::Warning));
         let removed = self.simulation.removed();
         if removed > 0 {
-            let text =
-                format!("{removed} particles of the fluid were removed because they are inside bodies");
+            let all = f64::from(removed) + f64::from(self.simulation.stats().particles);
+            let text = format!(
+                "{removed} particles of the fluid, {:.1} % of it, were removed because they are inside bodies or within half \
+                 a spacing of them",
+                100.0 * f64::from(removed) / all
+            );
             self.pending_events.push_back(Event::Note(text));
         }
         if let Some(packing) = self.simulation.packing().filter(|packing| packing.after.is_some()) {
@@ -215,6 +219,9 @@ impl Run {
                 let hint = "the fluid does not fit: move the pieces apart, or check particle_spacing";
                 Event::Warning(format!("{text}; {hint}"))
             });
+        }
+        if let Some(packing) = self.simulation.packing().filter(|packing| packing.is_overfull()) {
+            self.pending_events.push_back(Event::Warning(packing.overfull()));
         }
         Event::Started(Started {
             device: self.simulation.device_name(),
@@ -398,7 +405,7 @@ impl Run {
             energy: self.energy,
             level: self.monitor.level(),
             volume: self.volume,
-            particle_volume: self.particle_volume,
+            particle_volume: [self.particle_volume, f64::from(stats.particles) * self.volume_per_particle],
             timings: self.simulation.take_timings(),
         })
     }

@@ -212,11 +212,14 @@ impl Derived {
     /// The largest number of iterations of the implicit pressure in a step: that of the scene, or a quarter of the spacings
     /// along the longest side of the domain. An iteration carries a change of the pressure over one support radius, so that
     /// an impact on wide and deep water needs more iterations the finer it is resolved. 40 are enough for most scenes, and
-    /// more than 400 would take longer than the shorter steps that follow steps without convergence.
+    /// more than 400 would take longer than the shorter steps that follow steps without convergence. Where the fluid fills a
+    /// closed domain, one more only measures.
     pub fn max_iterations(scene: &Scene) -> u32 {
+        let measuring = u32::from(scene.solver.method == Method::Dfsph && scene.is_full());
         let size = scene.domain.max - scene.domain.min;
         let across = 0.25 * size.max_element() / scene.fluid.particle_spacing;
-        scene.solver.max_iterations.unwrap_or(across.clamp(Solver::USUAL_ITERATIONS as f32, 400.0) as u32)
+        let usual = across.clamp(Solver::USUAL_ITERATIONS as f32, 400.0) as u32;
+        measuring + scene.solver.max_iterations.unwrap_or(usual)
     }
 
     /// The time step in s in which body forces move a particle by this many spacings.

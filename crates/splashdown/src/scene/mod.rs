@@ -45,6 +45,7 @@ mod parse;
 mod picture;
 mod presets;
 mod reader;
+mod room;
 mod schema;
 mod script;
 mod slot;

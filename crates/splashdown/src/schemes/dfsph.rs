@@ -62,6 +62,15 @@ pub(super) fn relaxation(support_ratio: f32) -> f32 {
 /// Square of the sound speed of the implicit pressure, over the acceleration by gravity and shaking times the diagonal of the
 /// domain.
 const STIFFNESS: f32 = 2e4;
+/// The same where fluid fills a closed domain. Without a free surface a small excess of density raises the pressure
+/// everywhere, in proportion to this number. The weight of the fluid compresses it by less than 0.1 %.
+const FULL_STIFFNESS: f32 = 1e3;
+/// Square of the sound speed in such a domain over the square of the largest speed, in addition. The dynamic pressure compresses
+/// by 0.1 %.
+pub(super) const MOTION_STIFFNESS: f32 = 400.0;
+/// The largest mean excess of density that is accepted in such a domain. Particles that are not on a lattice have a larger sum
+/// of the kernel in the same space. What is above it raises the pressure, which keeps them apart.
+pub(super) const ACCEPTED_EXCESS: f32 = 0.002;
 /// Below this acceleration in m/s^2 the fluid has no compressibility: the weight is no measure of the pressure then.
 const WEAKEST_GRAVITY: f32 = 0.1;
 
@@ -69,8 +78,9 @@ const WEAKEST_GRAVITY: f32 = 0.1;
 /// is compressed by less than 0.005 % at its floor. No pressure gives the rest density to a sealed space that is overfull:
 /// without a compressibility the pressure grows with every iteration, which shortens the step, and a shorter step needs a
 /// larger pressure.
-pub(super) fn compressibility(acceleration: f32, diagonal: f32) -> f32 {
-    if acceleration < WEAKEST_GRAVITY { 0.0 } else { 1.0 / (STIFFNESS * acceleration * diagonal) }
+pub(super) fn compressibility(acceleration: f32, diagonal: f32, is_full: bool) -> f32 {
+    let stiffness = if is_full { FULL_STIFFNESS } else { STIFFNESS };
+    if acceleration < WEAKEST_GRAVITY { 0.0 } else { 1.0 / (stiffness * acceleration * diagonal) }
 }
 
 /// The mechanical pressure of a lattice over that in the forces: the sum of -V r dW/dr / 3 over the lattice, where V is
@@ -142,9 +152,10 @@ mod tests {
     /// At the weight of a column as high as the domain, of 8 m in this case.
     #[test]
     fn the_compressibility_is_small_and_vanishes_without_gravity() {
-        let compression = compressibility(9.81, 8.0) * 9.81 * 8.0;
-        assert!((compression - 5e-5).abs() < 1e-9, "{compression}");
-        assert_eq!(compressibility(0.0, 8.0), 0.0);
+        let compression = |is_full| compressibility(9.81, 8.0, is_full) * 9.81 * 8.0;
+        assert!((compression(false) - 5e-5).abs() < 1e-9, "{}", compression(false));
+        assert!((compression(true) - 1e-3).abs() < 1e-8, "{}", compression(true));
+        assert_eq!(compressibility(0.0, 8.0, false), 0.0);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Computes the constants of a simulation from its scene.
 
+use glam::Vec2;
+
 use super::{Scheme, dfsph, mueller2003, wcsph};
 use crate::boundary::SolidDistance;
 use crate::passes::viscous;
@@ -44,6 +46,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         });
     let closed = scene.domain.closed.as_flattened();
     let scheme = Scheme::new(scene);
+    let is_full = scheme.is_implicit() && scene.is_full();
     let numerical_viscosity = match solver.method {
         Method::Wcsph | Method::Dfsph => Derived::capillary_viscosity(scene),
         Method::Mueller2003 => mueller2003::ADDED_VISCOSITY * derived.sound_speed * support_radius,
@@ -108,7 +111,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         min_dt: solver.min_dt,
         closed: closed.iter().enumerate().map(|(bit, &closed)| u32::from(closed) << bit).sum(),
         clamp_pressure: u32::from(if scheme.is_implicit() {
-            is_viscous || solver.surface_tension != SurfaceTension::None
+            is_viscous || is_full || solver.surface_tension != SurfaceTension::None
         } else {
             solver.negative_pressure == NegativePressure::Clamp
         }),
@@ -155,6 +158,7 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         compressibility: dfsph::compressibility(
             scene.gravity.length() + oscillation.length(),
             (scene.domain.max - scene.domain.min).length(),
+            is_full,
         ),
         // The cohesion of Akinci's model is fitted to a surface that is compressed.
         surface_completion: match solver.surface_tension {
@@ -165,5 +169,8 @@ pub fn params(scene: &Scene, particles: u32) -> Params {
         slope_offset: scene.fluid.particle_spacing * solid.slope_offset,
         background_pressure: 0.0,
         lattice_moment: pressure_factor * derived.lattice_sum as f32,
+        accepted_excess: if is_full { dfsph::ACCEPTED_EXCESS } else { 0.0 },
+        motion_stiffness: if is_full { dfsph::MOTION_STIFFNESS } else { 0.0 },
+        unused: Vec2::ZERO,
     }
 }

@@ -1,7 +1,9 @@
 //! The constants of a simulation.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use splashdown_gpu::{WgslModule, gpu_struct};
+
+use super::StepState;
 
 /// The WGSL side of [`Params`]; imports [`STATE`](super::STATE).
 pub const WGSL: WgslModule = WgslModule { name: "sph/params", source: include_str!("params.wgsl") };
@@ -97,7 +99,7 @@ gpu_struct! {
         wetting: f32,
         /// Relaxation of the Jacobi map of the implicit pressure at the beginning of a step.
         relaxation: f32,
-        /// Relative excess of density that remains per unit of the implicit k, in s^2/m^2.
+        /// Relative excess of density that remains per unit of the implicit k, in s^2/m^2, without that by motions.
         compressibility: f32,
         /// Factor of the density that the implicit pressure adds at the free surface; see
         /// [`residual`](crate::passes::implicit::residual).
@@ -110,11 +112,22 @@ gpu_struct! {
         background_pressure: f32,
         /// The trace of the sum M of `passes::correction` over three, on the initial lattice.
         lattice_moment: f32,
+        /// The largest mean excess of density that the implicit pressure accepts; above zero only where fluid fills a closed
+        /// domain.
+        accepted_excess: f32,
+        /// Square of the sound speed of the implicit pressure over that of the largest speed; above zero only where fluid
+        /// fills a closed domain.
+        motion_stiffness: f32,
+        /// Padding.
+        unused: Vec2,
     }
 }
 
 /// The height in spacings of the water whose weight the tension of the implicit pressure may carry.
 const TENSION_HEIGHT: f32 = 2.0;
+
+/// The least motion per step, in spacings, for which the fluid in a full domain is as stiff as for its speed.
+const SLOWEST_MOTION: f32 = 0.01;
 
 /// The least `cfl_factor` for the speed of sound in the densest fluid, about half of the longest stable step. With 1.0 a block
 /// that was thrown into a corner gained energy.
@@ -141,6 +154,23 @@ impl Params {
             0.0
         } else {
             TENSION_HEIGHT * self.gravity.length() * self.particle_spacing
+        }
+    }
+
+    /// Relative excess of density that remains per unit of the implicit k in a step, in s^2/m^2. Where the fluid fills a
+    /// closed domain it depends on the largest speed; it is smaller than `compressibility`, or above zero if that is zero.
+    pub fn compressibility_in(&self, state: &StepState) -> f32 {
+        if self.motion_stiffness == 0.0 {
+            return self.compressibility;
+        }
+        // Fluid that rests without gravity has a compressibility too.
+        let slowest = SLOWEST_MOTION * self.particle_spacing / state.dt;
+        let speed = state.max_speed.max(state.body_speed).max(slowest);
+        let stiffness = self.motion_stiffness * speed * speed;
+        if self.compressibility > 0.0 {
+            self.compressibility / (1.0 + self.compressibility * stiffness)
+        } else {
+            1.0 / stiffness
         }
     }
 

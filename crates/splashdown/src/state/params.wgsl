@@ -49,6 +49,28 @@ struct Params {
     slope_offset: f32,
     background_pressure: f32,
     lattice_moment: f32,
+    accepted_excess: f32,
+    motion_stiffness: f32,
+    unused: vec2<f32>,
+}
+
+// See SolveState::is_measuring.
+fn is_measuring(iteration: u32) -> bool {
+    return params.accepted_excess > 0.0 && iteration == 0u;
+}
+
+// See Params::compressibility_in.
+fn compressibility_in(state: StepState) -> f32 {
+    if (params.motion_stiffness == 0.0) {
+        return params.compressibility;
+    }
+    let slowest = 0.01 * params.particle_spacing / state.dt;
+    let speed = max(max(state.max_speed, state.body_speed), slowest);
+    let stiffness = params.motion_stiffness * speed * speed;
+    if (params.compressibility > 0.0) {
+        return params.compressibility / (1.0 + params.compressibility * stiffness);
+    }
+    return 1.0 / stiffness;
 }
 
 // See Params::tension_limit.

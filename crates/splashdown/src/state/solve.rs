@@ -2,6 +2,8 @@
 
 use splashdown_gpu::{WgslModule, gpu_struct};
 
+use super::Params;
+
 /// The WGSL side of [`SolveState`].
 pub const WGSL: WgslModule = WgslModule { name: "sph/solve", source: include_str!("solve.wgsl") };
 
@@ -30,14 +32,20 @@ gpu_struct! {
         dt_ratio: f32,
         /// Length of the step over the length that the pressure was solved for; below 1 if it stops much of the fluid.
         advanced_part: f32,
-        /// Padding.
-        unused: f32,
+        /// The mean excess of density that is accepted in this step, where fluid fills a closed domain.
+        mean_excess: f32,
     }
 }
 
 impl SolveState {
     /// Marks a particle whose motion a nozzle determines, instead of a pressure.
     pub const NO_PRESSURE: f32 = -1e30;
+
+    /// True in the first iteration of a step where fluid fills a closed domain. It keeps the pressures, and measures the mean
+    /// excess of density.
+    pub fn is_measuring(&self, params: &Params) -> bool {
+        params.accepted_excess > 0.0 && self.iteration == 0
+    }
 
     /// The state at the beginning of a step, with the relaxation of the Jacobi map and the relative length of the step.
     pub fn new(is_stopped: bool, relaxation: f32, dt_ratio: f32) -> Self {
@@ -53,7 +61,7 @@ impl SolveState {
             renewal: 1.0,
             dt_ratio,
             advanced_part: 1.0,
-            unused: 0.0,
+            mean_excess: 0.0,
         }
     }
 }

@@ -11,7 +11,7 @@ struct SolveState {
     renewal: f32,
     dt_ratio: f32,
     advanced_part: f32,
-    unused: f32,
+    mean_excess: f32,
 }
 
 // Marks a particle whose motion a nozzle determines, instead of a pressure.

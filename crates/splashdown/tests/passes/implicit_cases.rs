@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3, Vec4, Vec4Swizzles};
 use splashdown::state::{Params, SolveState};
 
 use super::harness::{Case, Data};
-use super::implicit_step_cases::solving;
+use super::implicit_step_cases::{compressibility, full, solving};
 use super::iterative::{KERNELS, Output, base, case, lists, poisoned, suffix, vectors, world};
 use super::oracle::{self, Kernel, Parts, constants, neighbours};
 use super::world::params;
@@ -24,9 +24,18 @@ pub fn cases() -> Vec<Case> {
             cases.push(system(name, kernel, word, params));
             for bodies in [false, true] {
                 cases.push(predict(name, kernel, word, params, bodies));
-                cases.push(residual(name, kernel, word, params, bodies));
+                cases.push(residual(name, kernel, word, params, solving(), bodies));
             }
         }
+    }
+    let (kernel, word) = KERNELS[0];
+    let first = SolveState { iteration: 0, beta: 0.0, ..solving() };
+    let later = SolveState { mean_excess: 0.0015, ..solving() };
+    for bodies in [false, true] {
+        cases.push(residual("full, the first iteration", kernel, word, full(), first, bodies));
+        cases.push(residual("full, a further iteration", kernel, word, full(), later, bodies));
+        let weightless = Params { gravity: Vec3::ZERO, compressibility: 0.0, ..full() };
+        cases.push(residual("full and weightless", kernel, word, weightless, later, bodies));
     }
     cases
 }
@@ -163,10 +172,10 @@ fn predict(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool)
     })
 }
 
-fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool) -> Case {
+fn residual(name: &str, kernel: Kernel, word: &str, params: Params, solve: SolveState, bodies: bool) -> Case {
     let world = world(params);
     let (n, c) = (world.len(), constants(&world));
-    let solve = solving();
+    let is_measuring = params.accepted_excess > 0.0 && solve.iteration == 0;
     let limit = world.params.tension_limit();
     let predicted: Vec<Vec4> = vectors(n, 0)
         .iter()
@@ -231,7 +240,7 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         let removed = excess.min(least + 0.05 * dt_ratio * dt_ratio);
         larger += usize::from(removed < excess);
         let complete = removed + missing.min((0.02 * dt_ratio - excess).max(0.0));
-        let compressibility = f64::from(world.params.compressibility);
+        let compressibility = compressibility(&world.params, &world.state);
         let is_inside = limit > 0.0
             && complete > -0.3
             && c.support * normal.length() < 0.7
@@ -248,7 +257,7 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
                 pushed = pulled.min(complete + 0.02);
             }
         }
-        let change = c.dt * rate - compressibility * k;
+        let change = c.dt * rate - compressibility * k - f64::from(solve.mean_excess);
         let r = match k {
             k if k > 0.0 => pushed + change,
             k if k < 0.0 => pulled + change,
@@ -259,17 +268,25 @@ fn residual(name: &str, kernel: Kernel, word: &str, params: Params, bodies: bool
         let diagonal =
             c.dt * c.dt * (gradient.length_squared() + f64::from(stiffness[i].w)) + compressibility;
         let [above, below] = [pushed, pulled].map(|excess| k + 0.5 * (excess + change) / diagonal);
-        let next = if above > 0.0 { above } else { below.clamp(least, 0.0) };
+        let next = match above {
+            _ if is_measuring => k,
+            above if above > 0.0 => above,
+            _ => below.clamp(least, 0.0),
+        };
         let step_size = k.abs() + 0.5 * r_size / diagonal;
         iterates.push(next, step_size);
-        iterates.push(f64::from(0.7_f32) * f64::from(before[i].y) + f64::from(before[i].z), 2.0);
+        iterates.push(f64::from(solve.beta) * f64::from(before[i].y) + f64::from(before[i].z), 2.0);
         iterates.push(next - k, step_size);
         iterates.push(excess, 0.0);
         let error = if k > least { r.abs() } else { r.max(diagonal * (least - k)) };
         values[0] += error;
         sizes[0] += r_size + diagonal * (least - k).max(0.0);
-        values[3] += if error > 0.0 { k * r } else { 0.0 };
-        sizes[3] += k.abs() * r_size;
+        values[3] += match error {
+            _ if is_measuring => complete + c.dt * rate,
+            error if error > 0.0 => k * r,
+            _ => 0.0,
+        };
+        sizes[3] += k.abs().max(1.0) * r_size;
         values[1] += diagonal * (next - k) * (next - k);
         sizes[1] += 2.0 * diagonal * (next - k).abs() * step_size;
     }

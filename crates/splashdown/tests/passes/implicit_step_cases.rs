@@ -1,7 +1,7 @@
 //! The passes of the implicit pressure without sums over neighbours: the begin, the decision after an iteration, and the end.
 
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles};
-use splashdown::state::{Params, SolveState, StepCounters};
+use splashdown::state::{Params, SolveState, StepCounters, StepState};
 
 use super::harness::{Case, Data, wide};
 use super::iterative::{Output, base, case, poisoned, signed, vectors, world};
@@ -15,6 +15,7 @@ pub fn cases() -> Vec<Case> {
     cases.push(begin("after the frame", 0, 4e-4));
     let viscous = Params { implicit_viscosity: 0.02, ..params(2.0) };
     let weightless = Params { gravity: Vec3::ZERO, compressibility: 0.0, ..params(2.0) };
+    let full = full();
     let last = SolveState { iteration: 4, ..solving() };
     let first = SolveState { iteration: 0, best: f32::MAX, ..solving() };
     cases.extend([
@@ -67,12 +68,42 @@ pub fn cases() -> Vec<Case> {
             [5.0, 0.3],
         ),
         decide_in(Sums { impulse: 1e5, ..sums() }, "an impact that does not converge", last, 1.0, [5.0, 0.3]),
+        decide_in(
+            Sums { params: full, ..sums() },
+            "a small excess in a full domain",
+            first,
+            0.1,
+            [5.0, 0.01],
+        ),
+        decide_in(Sums { params: full, ..sums() }, "an excess in a full domain", first, 1.0, [5.0, 0.01]),
+        decide_in(
+            Sums { params: full, ..sums() },
+            "the first update in a full domain",
+            SolveState { iteration: 1, change: 1e-7, ..solving() },
+            1.0,
+            [5.0, 0.01],
+        ),
+        decide_in(Sums { params: full, ..sums() }, "converged in a full domain", solving(), 0.1, [5.0, 0.01]),
     ]);
     cases.push(finish("a violent step", 0.3, 0.0, 1.0));
     cases.push(finish("a calm step", 0.02, 0.0, 1.0));
     cases.push(finish("a larger pressure before", 0.8, 5.0, 1.0));
     cases.push(finish("a shortened step", 0.3, 0.0, 0.25));
     cases
+}
+
+/// Of a closed domain that is full of fluid.
+pub fn full() -> Params {
+    Params { clamp_pressure: 1, accepted_excess: 0.002, motion_stiffness: 400.0, ..params(2.0) }
+}
+
+/// The compressibility of the implicit pressure in a step.
+pub fn compressibility(params: &Params, state: &StepState) -> f64 {
+    let [weight, motion] = [params.compressibility, params.motion_stiffness].map(f64::from);
+    let least = 0.01 * f64::from(params.particle_spacing) / f64::from(state.dt);
+    let speed = f64::from(state.max_speed.max(state.body_speed)).max(least);
+    let stiffness = if weight > 0.0 { 1.0 / weight } else { 0.0 } + motion * speed * speed;
+    if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
 }
 
 /// A state in the middle of a solve.
@@ -89,7 +120,7 @@ pub fn solving() -> SolveState {
         renewal: 1.0,
         dt_ratio: 0.4,
         advanced_part: 1.0,
-        unused: 0.0,
+        mean_excess: 0.0,
     }
 }
 
@@ -190,17 +221,22 @@ fn decide_in(
         state.compression += (total[2] / n) as f32;
     }
     solve.iteration += 1;
+    let accepted = f64::from(params.accepted_excess);
+    let is_measuring = accepted > 0.0 && before.iteration == 0;
     let worst = residuals.iter().map(|sum| f64::from(sum.x)).fold(0.0, f64::max) / 64.0;
     let has_converged = error <= 0.001;
     let deep = if layer > 0.0 { f64::from(depth) } else { n.cbrt() }.max(5.0);
     let strictness = (5.0 / deep).powi(2).max(0.1 * f64::from(moved) / (deep * 0.001)).clamp(0.02, 1.0);
-    if worst <= 0.005 && error <= 0.001 * strictness || solve.iteration == 5 {
+    if is_measuring {
+        solve.mean_excess = (total[3] / n).min(accepted) as f32;
+    } else if worst <= 0.005 && error <= 0.001 * strictness || solve.iteration == 5 {
         solve.stopped = 1;
         let squares: f64 = impulses.iter().map(|v| f64::from(v.y)).sum();
-        let work = impulse + f64::from(world.params.compressibility) * squares;
+        let work = impulse + compressibility(&params, &world.state) * squares;
         solve.scale = ((1.0 + total[3] / work) as f32).clamp(0.5, 1.1);
         let moved = state.max_speed * state.dt / world.params.particle_spacing;
-        let late = strictness as f32 * (solve.iteration as f32 - 3.0) / 8.0;
+        let spent = solve.iteration - u32::from(accepted > 0.0);
+        let late = strictness as f32 * (spent as f32 - 3.0) / 8.0;
         solve.renewal =
             if world.params.implicit_viscosity > 0.0 { 1.0 } else { moved.max(late).clamp(0.02, 1.0) };
         let displaced = (impulse / n).sqrt() * f64::from(state.dt) / f64::from(world.params.particle_spacing);
@@ -220,7 +256,8 @@ fn decide_in(
         if error > 4.0 * f64::from(before.best) {
             (solve.relaxation, solve.beta, solve.best) = (0.25, 0.0, error as f32);
         } else {
-            let restarts = solve.iteration == 1 || total[1] > f64::from(before.change);
+            let restarts =
+                solve.iteration == 1 + u32::from(accepted > 0.0) || total[1] > f64::from(before.change);
             solve.beta = if restarts { 0.0 } else { (total[1] / f64::from(before.change)) as f32 };
             solve.best = before.best.min(error as f32);
         }

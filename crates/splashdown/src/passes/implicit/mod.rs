@@ -18,8 +18,11 @@
 //! slowly: [`residual`] states its limits. An image has the pressure of its particle and reflects its velocity; a body
 //! counts twice in b, because it reflects the fluid. So D' is the adjoint of D, the matrix dt^2 D D' + 1 / c^2 is symmetric
 //! and positive definite, and the forces conserve momentum. A dynamic body is a part of the system: its velocity in D is
-//! the one that the pressure gives it. The compressibility 1 / c^2 is too small to matter except in a sealed space that is
-//! overfull, where it bounds the pressure.
+//! the one that the pressure gives it. The compressibility 1 / c^2 is too small to matter except in a sealed space: it
+//! bounds the pressure there.
+//!
+//! Where fluid fills a closed domain, the compressibility is larger, and the mean excess of density is accepted up to a limit,
+//! because no pressure can take it away. The first iteration measures it and keeps the pressures.
 //!
 //! # The solver
 //! Nonsmooth nonlinear conjugate gradients (Silcowitz, Niebe & Erleben 2010) on the projected Jacobi map

@@ -33,6 +33,8 @@ pub(crate) const TOLERANCE: f32 = 0.02;
 const PACKED: f32 = 0.75;
 /// The tolerance for fluid without weight. It expands from a denser packing, and nothing stops it afterwards.
 const WEIGHTLESS_TOLERANCE: f32 = 0.1 * TOLERANCE;
+/// Fluid whose mean density is this many times that at rest is not relaxed: it would take minutes, and fill twice the space.
+const OVERFULL: f32 = 2.0;
 /// The name of the task for reports of progress.
 const TASK: &str = "initial packing";
 /// Maximum number of rounds.
@@ -74,6 +76,22 @@ impl Packing {
         self.after.as_ref().unwrap_or(&self.before)
     }
 
+    /// Whether the fluid is on average more than twice as dense as at rest, and has not been relaxed. Its particles are much
+    /// closer than `particle_spacing`.
+    pub fn is_overfull(&self) -> bool {
+        let rest = self.before.max / (1.0 + self.before.excess);
+        self.before.mean > OVERFULL * rest
+    }
+
+    /// The message about it.
+    pub fn overfull(&self) -> String {
+        format!(
+            "the fluid starts {:.1} times as dense as at rest and is not relaxed: set fluid.particle_spacing to the distance of \
+             its particles, or leave some out",
+            self.before.mean * (1.0 + self.before.excess) / self.before.max
+        )
+    }
+
     /// Whether the fluid is at most 2 % too dense.
     pub fn is_sound(&self) -> bool {
         self.density().excess <= TOLERANCE
@@ -99,7 +117,7 @@ impl std::fmt::Display for Packing {
     }
 }
 
-/// Measures the particles of a scene, and relaxes them if they are too dense. `None` for a scene whose fluid is one
+/// Measures the particles of a scene, and relaxes them if they are too dense, but not twice as dense as at rest. `None` for a scene whose fluid is one
 /// lattice without bodies and emitters, or empty.
 pub(super) fn relax(
     scene: &Scene,
@@ -116,6 +134,7 @@ pub(super) fn relax(
     let mut relaxation = Relaxation::new(scene, &first, bodies)?;
     let before = relaxation.density(&first)?;
     let mut packing = Packing { before, after: None, rounds: 0, moved: 0.0, seconds: 0.0 };
+    let most_rounds = if packing.is_overfull() { 0 } else { most_rounds };
     if most_rounds > 0 {
         let half = |part: f32| progress(TASK, 0.5 * part);
         packing.rounds = around_bodies::pack(scene, &mut particles.positions, bodies, &half)?;

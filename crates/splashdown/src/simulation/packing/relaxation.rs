@@ -46,7 +46,12 @@ impl Relaxation {
         positions: &[[f32; 3]],
         bodies: &[LoadedBody],
     ) -> Result<Self, SimulationError> {
-        Self::of(scene, without_motion(scene), positions, bodies)
+        let mut relaxation = Self::of(scene, without_motion(scene), positions, bodies)?;
+        // Without gravity a full domain would be soft, and keep an excess that the run removes.
+        let Simulation { params, executor, fields, .. } = &mut relaxation.simulation;
+        (params.accepted_excess, params.motion_stiffness) = (0.0, 0.0);
+        executor.write(fields.params, &[*params])?;
+        Ok(relaxation)
     }
 
     fn of(

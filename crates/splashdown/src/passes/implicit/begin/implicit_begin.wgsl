@@ -19,7 +19,7 @@ fn reset() {
     let longest = longest_step(max(state.max_speed, state.body_speed), 0.0, 0.0);
     solve.dt_ratio = min(state.dt / longest, 1.0);
     solve.advanced_part = 1.0;
-    solve.unused = 0.0;
+    solve.mean_excess = 0.0;
 }
 
 @compute @workgroup_size(64)

@@ -20,6 +20,14 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
     if solve.iteration == 0 {
         state.compression += total.z / n;
     }
+    if solve.is_measuring(params) {
+        let mean = total.w / n;
+        // Zero for NaN.
+        solve.mean_excess = if mean < 1e30 { mean.clamp(0.0, params.accepted_excess) } else { 0.0 };
+        solve.iteration = 1;
+        return;
+    }
+    let measuring = u32::from(params.accepted_excess > 0.0);
     solve.iteration += 1;
     // False for NaN.
     let is_valid = error < 1e30;
@@ -29,11 +37,11 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
     let is_enough = is_even && error <= params.tolerance * strictness;
     if has_converged && is_enough || solve.iteration >= params.max_iterations {
         solve.stopped = 1;
-        let work = impulse.x + params.compressibility * impulse.y;
+        let work = impulse.x + params.compressibility_in(state) * impulse.y;
         let scale = 1.0 + total.w / work.max(1e-30);
         solve.scale = scale.clamp(0.5, 1.1);
         let fastest = state.max_speed * state.dt / params.particle_spacing;
-        let late = strictness * (solve.iteration as f32 - 3.0) / 8.0;
+        let late = strictness * ((solve.iteration - measuring) as f32 - 3.0) / 8.0;
         solve.renewal =
             if params.implicit_viscosity > 0.0 { 1.0 } else { fastest.max(late).clamp(0.02, 1.0) };
         let displaced = (impulse.x / n).sqrt() * state.dt / params.particle_spacing;
@@ -56,7 +64,7 @@ pub(super) fn decide(buffers: DecideBindings<'_>) {
         solve.beta = 0.0;
         solve.best = error;
     } else {
-        let restarts = solve.iteration == 1 || total.y > solve.change;
+        let restarts = solve.iteration == 1 + measuring || total.y > solve.change;
         solve.beta = if restarts { 0.0 } else { total.y / solve.change.max(1e-37) };
         solve.best = solve.best.min(error);
     }

@@ -35,6 +35,14 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, worst: f32, n: f32) {
     if (solve.iteration == 0u) {
         state.compression += total.z / n;
     }
+    if (is_measuring(solve.iteration)) {
+        let mean = total.w / n;
+        // Zero for NaN.
+        solve.mean_excess = select(0.0, clamp(mean, 0.0, params.accepted_excess), mean < 1e30);
+        solve.iteration = 1u;
+        return;
+    }
+    let measuring = select(0u, 1u, params.accepted_excess > 0.0);
     solve.iteration += 1u;
     // False for NaN.
     let is_valid = error < 1e30;
@@ -44,10 +52,10 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, worst: f32, n: f32) {
     let is_enough = is_even && error <= params.tolerance * part;
     if ((has_converged && is_enough) || solve.iteration >= params.max_iterations) {
         solve.stopped = 1u;
-        let work = impulse.x + params.compressibility * impulse.y;
+        let work = impulse.x + compressibility_in(state) * impulse.y;
         solve.scale = clamp(1.0 + total.w / max(work, 1e-30), 0.5, 1.1);
         let fastest = state.max_speed * state.dt / params.particle_spacing;
-        let late = part * (f32(solve.iteration) - 3.0) / 8.0;
+        let late = part * (f32(solve.iteration - measuring) - 3.0) / 8.0;
         solve.renewal = select(clamp(max(fastest, late), 0.02, 1.0), 1.0, params.implicit_viscosity > 0.0);
         solve.warm_start = select(0.5, 1.0, has_converged);
         let displaced = sqrt(impulse.x / n) * state.dt / params.particle_spacing;
@@ -69,7 +77,7 @@ fn next_iteration(total: vec4<f32>, impulse: vec4<f32>, worst: f32, n: f32) {
         solve.beta = 0.0;
         solve.best = error;
     } else {
-        let restarts = solve.iteration == 1u || total.y > solve.change;
+        let restarts = solve.iteration == 1u + measuring || total.y > solve.change;
         solve.beta = select(total.y / max(solve.change, 1e-37), 0.0, restarts);
         solve.best = min(solve.best, error);
     }

@@ -52,7 +52,15 @@ pub(super) fn residual<K: Kernel, const BODIES: bool>(scratch: &mut Scratch, buf
     });
 
     *scratch.get::<Points>() = points;
-    let update = &Update::<BODIES> { params, solve, dt: state.dt, predicted, stiffness, solid_gradients };
+    let update = &Update::<BODIES> {
+        params,
+        solve,
+        dt: state.dt,
+        compressibility: params.compressibility_in(state),
+        predicted,
+        stiffness,
+        solid_gradients,
+    };
     let simd = Simd::in_use();
     let tasks = iterates[..n].par_chunks_mut(GROUP * GROUPS).zip(residuals.par_chunks_mut(GROUPS));
     tasks.enumerate().for_each(|(task, (iterates, sums))| {

@@ -123,17 +123,19 @@ fn update(i: u32) -> vec4<f32> {
     if (is_inside) {
         limits = limits_inside(complete);
     }
-    let change_of_density = state.dt * rate - params.compressibility * k;
+    let compressibility = compressibility_in(state);
+    let change_of_density = state.dt * rate - compressibility * k - solve.mean_excess;
     let residual = residual_of(limits, k, change_of_density);
     let scale = 1.0 / params.support_radius;
     let squares = max(dot(gradient, gradient) + stiffness[i].w, 1e-6 * scale * scale);
-    let diagonal = state.dt * state.dt * squares + params.compressibility;
-    let next = next_pressure(limits, k, change_of_density, diagonal);
+    let diagonal = state.dt * state.dt * squares + compressibility;
+    let is_first = is_measuring(solve.iteration);
+    let next = select(next_pressure(limits, k, change_of_density, diagonal), k, is_first);
     let change = next - k;
     let direction = solve.beta * iterates[i].y + iterates[i].z;
     iterates[i] = vec4(next, direction, change, excess);
     let error = select(max(residual, diagonal * (limits.least - k)), abs(residual), k > limits.least);
-    let work = select(0.0, k * residual, error > 0.0);
+    let work = select(select(0.0, k * residual, error > 0.0), complete + state.dt * rate, is_first);
     return vec4(error, diagonal * change * change, max(excess, 0.0), work);
 }
 
