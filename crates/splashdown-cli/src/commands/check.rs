@@ -243,6 +243,9 @@ fn basis(forecast: &Forecast) -> String {
     }
 }
 
+/// Fluid that starts less compressed than this comes to rest.
+const MINOR_EXCESS: f32 = 0.05;
+
 /// The density of the particles at the start.
 fn print_packing(packing: &Packing) {
     let density = packing.density();
@@ -261,11 +264,17 @@ fn print_packing(packing: &Packing) {
         );
     }
     if packing.after.is_some() && !packing.is_sound() {
-        console::note(format!(
-            "warning: the fluid starts {:.0} % too dense and cannot rest: move its pieces and the bodies apart, or check \
-             fluid.particle_spacing\n",
-            100.0 * density.excess
-        ));
+        let excess = 100.0 * density.excess;
+        console::note(if density.excess < MINOR_EXCESS {
+            format!(
+                "warning: the fluid starts {excess:.1} % too dense at one place, and moves a little until it rests\n"
+            )
+        } else {
+            format!(
+                "warning: the fluid starts {excess:.0} % too dense and cannot rest: move its pieces and the bodies apart, or \
+                 check fluid.particle_spacing\n"
+            )
+        });
     }
 }
 
@@ -291,9 +300,10 @@ fn print_resolution(resolution: &Resolution) {
     let film = thinnest.map(|piece| format!("{} {:.1} across", piece.owner, piece.spacings));
     let wave =
         resolution.wave.map(|wave| format!("waves {:.0} long, shaken by {:.2}", wave.length, wave.amplitude));
-    let bodies = resolution.bodies.iter().map(|BodyWidths { owner, thickness, gap, .. }| {
+    let bodies = resolution.bodies.iter().map(|BodyWidths { owner, thickness, is_shell, gap, .. }| {
         let or_more = |width: &Option<f32>| width.map_or("over 16".to_owned(), |width| format!("{width:.1}"));
-        format!("{owner} {} thick, gap {}", or_more(thickness), or_more(gap))
+        let thick = if *is_shell { "a shell".to_owned() } else { format!("{} thick", or_more(thickness)) };
+        format!("{owner} {thick}, gap {}", or_more(gap))
     });
     let parts: Vec<String> = depth.into_iter().chain(film).chain(wave).chain(bodies).collect();
     if !parts.is_empty() {

@@ -64,9 +64,14 @@ pub struct BodyWidths {
     /// A twentieth of its surface belongs to parts that are at most this thick; `None`: thicker than 16 spacings, or a
     /// shell.
     pub thickness: Option<f32>,
+    /// Whether it is a shell.
+    pub is_shell: bool,
     /// A twentieth of its surface is at most this far from a body or a closed side, at the start; `None`: farther than 16
     /// spacings.
     pub gap: Option<f32>,
+    /// Its longest side in spacings.
+    #[serde(skip)]
+    length: f32,
     /// It moves without a hinge, is lighter than the fluid, and the density of the fluid is integrated.
     #[serde(skip)]
     floats_in_continuity: bool,
@@ -109,7 +114,14 @@ impl Resolution {
                 "{owner} is {spacings:.1} spacings across: a film of fewer than {NARROW} has no inner flow"
             ));
         }
-        for BodyWidths { owner, thickness, gap, floats_in_continuity, sealed_at } in &self.bodies {
+        for BodyWidths { owner, thickness, gap, length, floats_in_continuity, sealed_at, .. } in &self.bodies
+        {
+            if *length < 1.0 {
+                all.push(format!(
+                    "{owner} is {length:.2} spacings long, less than a particle: check its scale"
+                ));
+                continue;
+            }
             if let Some(thickness) = thickness.filter(|&thickness| thickness < THIN_SOLID) {
                 all.push(format!(
                     "{owner} has parts {thickness:.1} spacings thick: fluid on both sides interacts through parts thinner than \
@@ -212,11 +224,14 @@ fn bodies(scene: &Scene) -> Result<Vec<BodyWidths>, BodyError> {
     let [low, high] = closed_bounds(domain.min, domain.max, bits);
     let found = widths(&surfaces, low, high, TOUCHING * spacing, WIDEST * spacing);
     let in_spacings = |width: Option<f32>| width.map(|width| width / spacing);
-    let heights: Vec<_> = surfaces.iter().map(|surface| height_above_floor(scene, surface)).collect();
-    let each = owners.into_iter().zip(found).zip(floating).zip(heights).map(
-        |((((owner, is_shell), widths), floats), height)| BodyWidths {
+    let places = surfaces.iter().map(|surface| (height_above_floor(scene, surface), longest_side(surface)));
+    let places: Vec<_> = places.collect();
+    let each = owners.into_iter().zip(found).zip(floating).zip(places).map(
+        |((((owner, is_shell), widths), floats), (height, length))| BodyWidths {
             owner,
             thickness: in_spacings(widths.thickness.filter(|_| !is_shell)),
+            is_shell,
+            length: length / spacing,
             gap: in_spacings(widths.gap),
             floats_in_continuity: floats && is_integrated,
             sealed_at: height.filter(|&height| floats && height < SEALED),
@@ -225,11 +240,21 @@ fn bodies(scene: &Scene) -> Result<Vec<BodyWidths>, BodyError> {
     Ok(each.collect())
 }
 
+/// The lower and the upper corner of a surface that is not empty.
+fn corners(surface: &Triangles) -> Option<(Vec3, Vec3)> {
+    let points = || surface.iter().flatten().copied();
+    Some((points().reduce(Vec3::min)?, points().reduce(Vec3::max)?))
+}
+
+/// The longest side of the box around a surface in m.
+fn longest_side(surface: &Triangles) -> f32 {
+    corners(surface).map_or(0.0, |(low, high)| (high - low).max_element())
+}
+
 /// The height of the lowest point of a surface above the closed side to which gravity points, in spacings. `None` for one
 /// that does not meet a block of fluid.
 fn height_above_floor(scene: &Scene, surface: &Triangles) -> Option<f32> {
-    let points = || surface.iter().flatten().copied();
-    let (low, high) = (points().reduce(Vec3::min)?, points().reduce(Vec3::max)?);
+    let (low, high) = corners(surface)?;
     let is_wet = scene.fluid.blocks.iter().any(|block| {
         let (from, to) = block.shape.bounds();
         low.cmplt(to).all() && high.cmpgt(from).all()
@@ -332,6 +357,18 @@ mod tests {
         let expected = 9.81 * 0.09 / std::f32::consts::TAU / 0.02;
         assert!((deep.length / expected - 1.0).abs() < 0.01, "{deep:?}");
         assert!((deep.amplitude - 0.5).abs() < 0.01, "{deep:?}");
+    }
+
+    #[test]
+    fn a_body_smaller_than_a_particle_is_reported() {
+        let body = |scale: f32| {
+            format!(
+                "[[body]]\nname = \"crumb\"\nmesh = \"cube\"\nscale = {scale}\nposition = [0.5, 0.8, 0.5]\n"
+            )
+        };
+        let found = |scale: f32| of(&scene("", &body(scale))).too_coarse().join(" ");
+        assert!(found(0.002).contains("0.10 spacings long, less than a particle"), "{}", found(0.002));
+        assert!(!found(0.2).contains("less than a particle"));
     }
 
     #[test]

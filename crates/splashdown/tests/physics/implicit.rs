@@ -313,12 +313,11 @@ fn sealed_vortex(gravity: f32) -> Result<Stats, SimulationError> {
 /// A lattice that is sheared has a larger sum of the kernel, and no room to expand.
 #[test]
 fn the_pressure_in_a_sealed_space_is_bounded() {
-    let stats = sealed_vortex(9.81).unwrap();
-    assert!(stats.max_speed < 3.0, "{stats:?}");
-    assert!(stats.steps < 2000, "{stats:?}");
-    // Control: without gravity there is no compressibility.
-    let result = sealed_vortex(0.0);
-    assert!(matches!(result, Err(SimulationError::StepTooSmall { .. })), "{result:?}");
+    for gravity in [9.81, 0.0] {
+        let stats = sealed_vortex(gravity).unwrap();
+        assert!(stats.max_speed < 1.5, "{gravity}: {stats:?}");
+        assert!(stats.steps < 500, "{gravity}: {stats:?}");
+    }
 }
 
 /// The warnings of a collapsing column of 10 x 20 x 10 particles with these keys.

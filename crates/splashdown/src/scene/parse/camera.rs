@@ -88,8 +88,9 @@ fn check(
     camera: &Camera,
 ) -> Part<()> {
     if let Some(previous) = previous.filter(|previous| keyframe.time <= previous.time) {
-        let (path, time) = (section.key_path("time"), keyframe.time);
-        let message = format!("{path} = {time} s is not after the previous keyframe, {} s", previous.time);
+        // In single precision, in which they were read: its shortest form is the one in the file.
+        let (path, time, before) = (section.key_path("time"), keyframe.time as f32, previous.time as f32);
+        let message = format!("{path} = {time} s is not after the previous keyframe, {before} s");
         return Err(section.complain("time", message, "", "keyframes must be in order of increasing time"));
     }
     if keyframe.eye.is_none() {

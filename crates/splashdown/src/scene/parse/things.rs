@@ -220,11 +220,12 @@ fn read_script(section: &Section<'_>, mesh: &MeshSource, duration: f32) -> Part<
     let (shift, turn) = (shift?, turn?);
     for (k, pair) in keyframes.windows(2).enumerate() {
         if pair[1].time <= pair[0].time {
+            // In single precision, in which they were read: its shortest form is the one in the file.
             let message = format!(
                 "{} = {} s is not after the previous keyframe, {} s",
                 sections[k + 1].key_path("time"),
-                pair[1].time,
-                pair[0].time
+                pair[1].time as f32,
+                pair[0].time as f32
             );
             let hint = "keyframes must be in order of increasing time";
             return Err(sections[k + 1].complain("time", message, "", hint));
