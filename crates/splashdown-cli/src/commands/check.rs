@@ -243,9 +243,6 @@ fn basis(forecast: &Forecast) -> String {
     }
 }
 
-/// Fluid that starts less compressed than this comes to rest.
-const MINOR_EXCESS: f32 = 0.05;
-
 /// The density of the particles at the start.
 fn print_packing(packing: &Packing) {
     let density = packing.density();
@@ -264,17 +261,11 @@ fn print_packing(packing: &Packing) {
         );
     }
     if packing.after.is_some() && !packing.is_sound() {
-        let excess = 100.0 * density.excess;
-        console::note(if density.excess < MINOR_EXCESS {
-            format!(
-                "warning: the fluid starts {excess:.1} % too dense at one place, and moves a little until it rests\n"
-            )
-        } else {
-            format!(
-                "warning: the fluid starts {excess:.0} % too dense and cannot rest: move its pieces and the bodies apart, or \
-                 check fluid.particle_spacing\n"
-            )
-        });
+        console::note(format!(
+            "warning: the fluid starts {:.1} % too dense at one place: {}\n",
+            100.0 * density.excess,
+            packing.advice()
+        ));
     }
 }
 

@@ -216,8 +216,7 @@ impl Run {
             self.pending_events.push_back(if packing.is_sound() {
                 Event::Note(text)
             } else {
-                let hint = "the fluid does not fit: move the pieces apart, or check particle_spacing";
-                Event::Warning(format!("{text}; {hint}"))
+                Event::Warning(format!("{text}; {}", packing.advice()))
             });
         }
         if let Some(packing) = self.simulation.packing().filter(|packing| packing.is_overfull()) {

@@ -33,6 +33,8 @@ pub(crate) const TOLERANCE: f32 = 0.02;
 const PACKED: f32 = 0.75;
 /// The tolerance for fluid without weight. It expands from a denser packing, and nothing stops it afterwards.
 const WEIGHTLESS_TOLERANCE: f32 = 0.1 * TOLERANCE;
+/// Fluid that starts with a smaller largest excess than this comes to rest.
+const MINOR: f32 = 0.05;
 /// Fluid whose mean density is this many times that at rest is not relaxed: it would take minutes, and fill twice the space.
 const OVERFULL: f32 = 2.0;
 /// The name of the task for reports of progress.
@@ -83,7 +85,16 @@ impl Packing {
         self.before.mean > OVERFULL * rest
     }
 
-    /// The message about it.
+    /// What to do about fluid that is not [sound](Self::is_sound).
+    pub fn advice(&self) -> &'static str {
+        if self.density().excess < MINOR {
+            "it moves a little until it rests"
+        } else {
+            "the fluid does not fit: move its pieces and the bodies apart, or check fluid.particle_spacing"
+        }
+    }
+
+    /// The message about fluid that is [overfull](Self::is_overfull).
     pub fn overfull(&self) -> String {
         format!(
             "the fluid starts {:.1} times as dense as at rest and is not relaxed: set fluid.particle_spacing to the distance of \
@@ -117,8 +128,8 @@ impl std::fmt::Display for Packing {
     }
 }
 
-/// Measures the particles of a scene, and relaxes them if they are too dense, but not twice as dense as at rest. `None` for a scene whose fluid is one
-/// lattice without bodies and emitters, or empty.
+/// Measures the particles of a scene, and relaxes them if they are too dense, but at most twice as dense as at rest. `None`
+/// for a scene whose fluid is one lattice without bodies and emitters, or empty.
 pub(super) fn relax(
     scene: &Scene,
     particles: &mut Particles,
@@ -172,4 +183,28 @@ pub(super) fn is_lattice(scene: &Scene) -> bool {
     let fluid = &scene.fluid;
     let is_alone = scene.bodies.is_empty() && scene.emitters.is_empty();
     is_alone && sample::has_blocks_only(fluid) && fluid.blocks.len() < 2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn packing(mean: f32, max: f32) -> Packing {
+        let before = InitialDensity { mean, max, place: [0.0; 3], excess: max / 1000.0 - 1.0 };
+        Packing { before, after: None, rounds: 0, moved: 0.0, seconds: 0.0 }
+    }
+
+    #[test]
+    fn only_fluid_that_is_too_dense_on_average_is_overfull() {
+        assert!(packing(7200.0, 8000.0).is_overfull());
+        assert!(packing(7200.0, 8000.0).overfull().contains("7.2 times as dense"));
+        assert!(!packing(1350.0, 3000.0).is_overfull(), "a few particles inside one another");
+        assert!(!packing(990.0, 1000.0).is_overfull());
+    }
+
+    #[test]
+    fn a_small_excess_is_no_reason_to_move_pieces() {
+        assert!(packing(990.0, 1030.0).advice().contains("until it rests"));
+        assert!(packing(990.0, 1100.0).advice().contains("does not fit"));
+    }
 }
