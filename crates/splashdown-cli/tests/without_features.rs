@@ -45,7 +45,7 @@ fn a_dynamic_body_names_its_feature() -> Outcome {
     const SCENE: &str = "
 [scene]
 name = \"ball\"
-duration = 0.01
+duration = 0.02
 [domain]
 min = [0, 0, 0]
 max = [1, 1, 1]
