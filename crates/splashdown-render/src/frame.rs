@@ -2,7 +2,7 @@
 
 use crate::glass::panes_of;
 use crate::globals::{EdgeGlobals, Globals};
-use crate::tiling::Tile;
+use crate::tiling::{self, Tile};
 use crate::{
     BodyBuffers, Camera, Domain, DrawnDroplets, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice,
     DrawnSurface, Floor, Quality, RenderError, Sky, SurfaceStyle, Tank, TracedMeshes,
@@ -213,11 +213,15 @@ impl<'a> Frame<'a> {
 
     /// Pixels around a tile of a picture of this size that its passes read.
     pub(crate) fn border(&self, size: [u32; 2]) -> Result<u32, RenderError> {
-        let Some(drawn) = &self.liquid_particles else { return Ok(0) };
+        if !self.has_liquid() || self.traced_samples().is_some() {
+            return Ok(0);
+        }
+        let around_exit = tiling::around_exit(size);
+        let Some(drawn) = &self.liquid_particles else { return Ok(around_exit) };
         let view = self.camera.view(size[0] as f32 / size[1] as f32)?;
         let pixel_angle = 2.0 * view.up.length() / size[1] as f32;
         let nearest = view.eye.clamp(self.domain.min.into(), self.domain.max.into());
-        Ok(drawn.border(view.eye.distance(nearest).max(view.near), pixel_angle))
+        Ok(drawn.border(view.eye.distance(nearest).max(view.near), pixel_angle).max(around_exit))
     }
 
     /// The uniforms of a picture in one piece.
@@ -259,6 +263,8 @@ impl<'a> Frame<'a> {
             // Seen from inside, a pane would mirror the scene and hide nothing.
             glass: if self.domain.contains(view.eye) { [0; 4] } else { panes },
             sample_count: 1,
+            // The positions of particles and of the plane behind the liquid are not known.
+            seen_through: u32::from(self.particles.is_some() || self.slice.is_some()),
             line_width: (1.5 * scale).clamp(1.0, 8.0),
             ..Globals::default()
         };

@@ -142,11 +142,11 @@ impl Offscreen {
 
     /// The memory for drawing pictures of this size. A picture is in memory three times: drawn, waiting to be written,
     /// and as a compressed file. On the device there are the textures of a tile, and for an interactive liquid the
-    /// scenes of all.
+    /// scenes of all and the distances of their bodies.
     pub fn memory_forecast([width, height]: [u32; 2]) -> MemoryForecast {
         let pixels = u64::from(width) * u64::from(height);
         let tile = pixels.min(MOST_PIXELS);
-        let scenes = if pixels > tile { 4 * pixels } else { 0 };
+        let scenes = if pixels > tile { 9 * pixels / 2 } else { 0 };
         MemoryForecast { host: 12 * pixels, device: BYTES_PER_PIXEL * tile + scenes }
     }
 

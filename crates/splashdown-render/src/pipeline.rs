@@ -142,6 +142,16 @@ pub(crate) const ADD: BlendState = {
 /// Alpha blending of colours that are already multiplied by alpha.
 pub(crate) const PREMULTIPLIED: BlendState = BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
+/// As [`PREMULTIPLIED`], over an opaque picture, whose alpha becomes the fraction of it that remains visible.
+pub(crate) const DIMMING: BlendState = BlendState {
+    color: BlendState::PREMULTIPLIED_ALPHA_BLENDING.color,
+    alpha: wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::Zero,
+        dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
+        operation: wgpu::BlendOperation::Add,
+    },
+};
+
 /// Alpha blending (straight alpha) over an opaque picture, which stays opaque.
 pub(crate) const OVER: BlendState = BlendState {
     color: wgpu::BlendComponent {

@@ -320,6 +320,7 @@ impl Renderer {
         }
         if is_refracted {
             targets.scenes.record(recorder.encoder(), tile.index);
+            targets.solids.record(recorder.encoder(), tile.index);
         }
         if extent == Extent::BehindLiquid {
             recorder.finish();

@@ -21,11 +21,13 @@ pub(crate) struct Targets {
     /// The picture without the liquid.
     pub scene: TextureView,
     /// That of every tile, because refraction reads from all of them.
-    pub scenes: Scenes,
+    pub scenes: OfTiles,
     /// Length of the view ray inside the liquid, at half resolution.
     pub thickness: TextureView,
     /// Relative distance of the nearest body, at half resolution.
     pub solid: TextureView,
+    /// That of every tile.
+    pub solids: OfTiles,
     /// Created with the first mesh.
     pub mesh: Option<MeshTargets>,
     /// Created with the first foam.
@@ -65,15 +67,18 @@ impl Targets {
         let drawn = TextureUsages::RENDER_ATTACHMENT;
         let read = drawn | TextureUsages::TEXTURE_BINDING;
         let make = |label, size, format, samples, usage| texture(device, label, size, format, samples, usage);
-        let scene = texture_of_layers(device, "scene", size, 1, format, read | TextureUsages::COPY_SRC);
+        let copied = read | TextureUsages::COPY_SRC;
+        let scene = texture_of_layers(device, "scene", size, 1, format, copied);
+        let solid = texture_of_layers(device, "distance of bodies", half, 1, THICKNESS_FORMAT, copied);
         Targets {
             size,
             samples: (sample_count > 1).then(|| make("samples", size, format, sample_count, drawn)),
             depth: make("depth", size, DEPTH, sample_count, read),
             scene: scene.create_view(&TextureViewDescriptor::default()),
-            scenes: Scenes::new(device, scene, layers),
+            scenes: OfTiles::new(device, "scenes", scene, layers),
             thickness: make("thickness", half, THICKNESS_FORMAT, 1, read),
-            solid: make("distance of bodies", half, THICKNESS_FORMAT, 1, read),
+            solid: solid.create_view(&TextureViewDescriptor::default()),
+            solids: OfTiles::new(device, "distances of bodies", solid, layers),
             mesh: None,
             foam: None,
         }
@@ -87,38 +92,38 @@ impl Targets {
     }
 }
 
-/// The scenes of all tiles in the layers of one texture.
+/// A texture of all tiles, in the layers of one texture.
 #[derive(Debug)]
-pub(crate) struct Scenes {
+pub(crate) struct OfTiles {
     /// All layers.
     pub view: TextureView,
-    /// The scene of the tile that is drawn.
-    scene: Texture,
+    /// That of the tile that is drawn.
+    drawn: Texture,
     /// Absent in a picture of one tile.
     layers: Option<Texture>,
     count: u32,
 }
 
-impl Scenes {
-    fn new(device: &Device, scene: Texture, count: u32) -> Scenes {
+impl OfTiles {
+    fn new(device: &Device, label: &str, drawn: Texture, count: u32) -> OfTiles {
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-        let Extent3d { width, height, .. } = scene.size();
-        let make = || texture_of_layers(device, "scenes", [width, height], count, scene.format(), usage);
+        let Extent3d { width, height, .. } = drawn.size();
+        let make = || texture_of_layers(device, label, [width, height], count, drawn.format(), usage);
         let layers = (count > 1).then(make);
-        let view = layers.as_ref().unwrap_or(&scene).create_view(&TextureViewDescriptor {
+        let view = layers.as_ref().unwrap_or(&drawn).create_view(&TextureViewDescriptor {
             dimension: Some(TextureViewDimension::D2Array),
             ..Default::default()
         });
-        Scenes { view, scene, layers, count }
+        OfTiles { view, drawn, layers, count }
     }
 
-    /// Copies the scene of a tile to its layer. Drivers of lavapipe resolve several samples per pixel only into the first
+    /// Copies the texture of a tile to its layer. Drivers of lavapipe resolve several samples per pixel only into the first
     /// layer of a texture.
     pub fn record(&self, encoder: &mut CommandEncoder, tile: u32) {
         let Some(layers) = &self.layers else { return };
         let mut layer = layers.as_image_copy();
         layer.origin.z = tile;
-        encoder.copy_texture_to_texture(self.scene.as_image_copy(), layer, self.scene.size());
+        encoder.copy_texture_to_texture(self.drawn.as_image_copy(), layer, self.drawn.size());
     }
 }
 

@@ -8,12 +8,12 @@
 //! tiles are even.
 //!
 //! *Borders.* Passes that read neighbouring pixels need some around a tile, which are drawn and left out:
-//! one texel of the thickness of the liquid, at half the resolution, or the reach of the filters of a liquid
-//! of particles.
+//! the texels of the thickness of the liquid from which the normal of its far side follows, or the reach of
+//! the filters of a liquid of particles.
 //!
-//! *Refraction* without traced rays reads the picture behind the liquid anywhere. The scenes of all tiles are
-//! therefore drawn first, into the layers of one texture; see `Targets::scene` and `scene_at` in
-//! `shared/liquid.wgsl`.
+//! *Refraction* without traced rays reads the picture behind the liquid, and the distances of bodies, anywhere.
+//! The scenes of all tiles are therefore drawn first, into the layers of one texture; see `Targets::scenes` and
+//! `shared/picture_behind.wgsl`.
 //!
 //! With lavapipe a tiled picture equals the same picture in one piece but for single pixels at outlines,
 //! where the rounding of the projection moves an edge by up to 1/256 of a pixel: see the tests.
@@ -40,6 +40,9 @@ pub(crate) const MOST_PIXELS: u64 = 1 << 23;
 pub(crate) const BYTES_PER_PIXEL: u64 = 80;
 /// One texel of the thickness of the liquid.
 const LEAST_BORDER: u32 = 2;
+/// Largest distance in pixels at which the normal of the far side of a liquid reads its thickness, over the height of
+/// the picture; as in `shared/liquid.wgsl`.
+const EXIT_REACH: f32 = 0.03;
 
 /// How a picture is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +84,12 @@ pub(crate) fn check_picture([width, height]: [u32; 2]) -> Result<(), RenderError
     Ok(())
 }
 
+/// Pixels around a tile of a picture of this size from which the normal of the far side of a liquid follows.
+pub(crate) fn around_exit([_, height]: [u32; 2]) -> u32 {
+    let reach = (EXIT_REACH * height as f32).ceil().max(2.0) as u32;
+    (reach + LEAST_BORDER).next_multiple_of(2)
+}
+
 /// The size of the textures for a picture, on a device with this largest side of a texture.
 pub(crate) fn texture_size(picture: [u32; 2], largest_side: u32) -> [u32; 2] {
     texture_within(picture, largest_side, MOST_PIXELS)
@@ -93,8 +102,9 @@ fn texture_within(picture: [u32; 2], largest_side: u32, most_pixels: u64) -> [u3
     }
     let mut grid = [1, 1];
     loop {
-        let texture = [0, 1]
-            .map(|axis: usize| picture[axis].div_ceil(grid[axis]).next_multiple_of(2) + 2 * LEAST_BORDER);
+        let texture = [0, 1].map(|axis: usize| {
+            picture[axis].div_ceil(grid[axis]).next_multiple_of(2) + 2 * around_exit(picture)
+        });
         // The filters of a liquid of particles have a margin of their own.
         let fits = texture.iter().all(|side| side + 2 * crate::screen_space::MARGIN <= largest_side);
         if (fits && pixels(texture) <= most_pixels) || texture[0].max(texture[1]) < 16 {

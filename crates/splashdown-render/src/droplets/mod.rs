@@ -37,7 +37,8 @@ use crate::error::{check_radius, check_shutter};
 use crate::globals::Globals;
 use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group_layout, linear_sampler};
 use crate::shader::{
-    ENVIRONMENT, GLOBALS, MATTE, OPTICS, PICTURE_BEHIND, REFRACTED, SPHERE, SUN_LAYERS, SUNLIT, Shader, TRACE,
+    BODIES_BEHIND, ENVIRONMENT, GLOBALS, MATTE, OPTICS, PICTURE_BEHIND, REFRACTED, SPHERE, SUN_LAYERS,
+    SUNLIT, Shader, TRACE,
 };
 use crate::targets::Targets;
 use crate::{DropletBuffers, Liquid, RenderError};
@@ -46,7 +47,16 @@ use wgpu::{BindGroupLayout, BindingResource, Device, RenderPass, RenderPipeline,
 const DROPLETS: &str = include_str!("droplets.wgsl");
 pub(crate) const SHADER: Shader = Shader {
     label: "droplets",
-    parts: &[GLOBALS, ENVIRONMENT, OPTICS, PICTURE_BEHIND, SPHERE, include_str!("plain.wgsl"), DROPLETS],
+    parts: &[
+        GLOBALS,
+        ENVIRONMENT,
+        OPTICS,
+        PICTURE_BEHIND,
+        BODIES_BEHIND,
+        SPHERE,
+        include_str!("plain.wgsl"),
+        DROPLETS,
+    ],
 };
 pub(crate) const TRACED: Shader = Shader {
     label: "traced droplets",
@@ -119,7 +129,7 @@ impl Droplets {
     /// has that of the trees as well.
     pub fn new(device: &Device, scene: &[&BindGroupLayout], format: TextureFormat, samples: u32) -> Droplets {
         let is_traced = scene.len() == 3;
-        let behind = [Bind::TextureLayers, Bind::Texture, Bind::Sampler];
+        let behind = [Bind::TextureLayers, Bind::TextureLayers, Bind::Sampler];
         let behind = if is_traced { &[][..] } else { &behind };
         let bindings: Vec<Bind> = [Bind::Storage].into_iter().chain(behind.iter().copied()).collect();
         let layout = bind_group_layout(device, "droplets", &bindings);
@@ -138,8 +148,8 @@ impl Droplets {
     /// Binds the droplets; without traced rays, with the targets that contain the picture behind them.
     pub fn bind(&self, device: &Device, drawn: &DrawnDroplets<'_>, targets: Option<&Targets>) -> Vec<Chunk> {
         let behind = |(targets, sampler)| {
-            let Targets { scenes, solid, .. }: &Targets = targets;
-            [&scenes.view, solid]
+            let Targets { scenes, solids, .. }: &Targets = targets;
+            [&scenes.view, &solids.view]
                 .map(BindingResource::TextureView)
                 .into_iter()
                 .chain([BindingResource::Sampler(sampler)])

@@ -45,7 +45,7 @@ mod layer;
 use crate::chunks::{Chunk, bind_chunks};
 use crate::error::{check_radius, check_shutter};
 use crate::globals::Globals;
-use crate::pipeline::{Bind, Depth, PREMULTIPLIED, PipelineDesc, bind_group_layout};
+use crate::pipeline::{Bind, DIMMING, Depth, PREMULTIPLIED, PipelineDesc, bind_group_layout};
 use crate::shader::{ENVIRONMENT, GLOBALS, Shader};
 use crate::targets::LAYER_FORMAT;
 use crate::{FoamBuffers, RenderError};
@@ -119,12 +119,13 @@ impl Foam {
         let layout = bind_group_layout(device, "foam", &[Bind::Storage]);
         let layouts = [globals, environment, &layout];
         // In the order of `Kinds`: a mask with a bit per kind, and the target.
-        let pipelines = [(4.0, format), (3.0, LAYER_FORMAT), (7.0, LAYER_FORMAT)];
-        let pipelines = pipelines.map(|(kinds, format)| {
+        let pipelines =
+            [(4.0, format, DIMMING), (3.0, LAYER_FORMAT, PREMULTIPLIED), (7.0, LAYER_FORMAT, PREMULTIPLIED)];
+        let pipelines = pipelines.map(|(kinds, format, blend)| {
             let constants = [("KINDS", kinds)];
             let desc = PipelineDesc {
                 depth: Some(Depth::Test),
-                blend: Some(PREMULTIPLIED),
+                blend: Some(blend),
                 constants: &constants,
                 ..PipelineDesc::new(SHADER, &layouts, format)
             };
@@ -138,8 +139,8 @@ impl Foam {
         bind_chunks(device, "foam", &self.layout, drawn.buffers.count, &[drawn.buffers.column()], &[])
     }
 
-    /// Draws some kinds with one sample per pixel: [`Kinds::UnderWater`] into a texture of the format of the picture, the
-    /// others into one of [`LAYER_FORMAT`]. Expects groups 0 (globals) and 1 (environment) to be bound.
+    /// Draws some kinds with one sample per pixel: [`Kinds::UnderWater`] into a texture of the format of the picture, whose
+    /// alpha then is the fraction of the light from behind that passes, the others into one of [`LAYER_FORMAT`]. Expects groups 0 (globals) and 1 (environment) to be bound.
     pub fn record(&self, pass: &mut RenderPass<'_>, chunks: &[Chunk], kinds: Kinds) {
         if chunks.is_empty() {
             return;

@@ -291,7 +291,7 @@ fn the_passes_of_all_tiles_are_measured() {
     };
     assert_eq!(counts(SIZE), [1, 1, 1]);
     // The scenes of all tiles are drawn before those of each.
-    assert_eq!(counts([104, 64]), [8, 4, 4]);
+    assert_eq!(counts([112, 72]), [8, 4, 4]);
     harness.renderer.set_timing(false);
     let mut target = harness.target(SIZE, SIZE);
     target.render_to_rgba(&mut harness.renderer, &frame).unwrap();

@@ -1,7 +1,7 @@
 // Shades the smoothed distances and blends them over the picture. Needs globals.wgsl,
-// environment.wgsl, liquid.wgsl, fullscreen.wgsl.
+// environment.wgsl, bodies_behind.wgsl, liquid.wgsl, fullscreen.wgsl.
 
-@group(2) @binding(3) var distances: texture_2d<f32>;      // distance along the view direction, liquid fraction
+@group(2) @binding(4) var distances: texture_2d<f32>;      // distance along the view direction, liquid fraction
 
 const NO_LIQUID = 1e30;
 // Liquid fraction at the outline, and the standard deviation of its average, in radii of the
@@ -72,6 +72,6 @@ fn fragment_main(@builtin(position) position: vec4f) -> Output {
     let down = slope(pixel, vec2i(0, 1), here);
     var normal = cross(down, across);
     normal = select(normal, -normal, dot(normal, here) > 0.0);
-    let colour = liquid_colour(globals.eye + here, normal, liquid_path(position.xy));
+    let colour = liquid_colour(position.xy, globals.eye + here, normal);
     return Output(vec4f(colour, covered), clamp(depth_of(distance), 0.0, 1.0));
 }

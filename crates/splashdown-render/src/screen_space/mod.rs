@@ -49,7 +49,9 @@ use crate::pipeline::{
     ADD, Bind, DEPTH, Depth, OVER, PipelineDesc, bind_group, bind_group_layout, linear_sampler,
 };
 use crate::recorder::Recorder;
-use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, PICTURE_BEHIND, SPHERE, Shader};
+use crate::shader::{
+    BODIES_BEHIND, ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, PICTURE_BEHIND, SPHERE, Shader,
+};
 use crate::targets::{THICKNESS_FORMAT, Targets, texture};
 use crate::{Liquid, ParticleBuffers, RenderError};
 use wgpu::{
@@ -70,7 +72,16 @@ pub(crate) const CLEANUP: Shader =
     Shader { label: "cleanup", parts: &[GLOBALS, FULLSCREEN, NARROW_RANGE, include_str!("cleanup.wgsl")] };
 pub(crate) const COMPOSE: Shader = Shader {
     label: "compose",
-    parts: &[GLOBALS, FULLSCREEN, ENVIRONMENT, OPTICS, PICTURE_BEHIND, LIQUID, include_str!("compose.wgsl")],
+    parts: &[
+        GLOBALS,
+        FULLSCREEN,
+        ENVIRONMENT,
+        OPTICS,
+        PICTURE_BEHIND,
+        BODIES_BEHIND,
+        LIQUID,
+        include_str!("compose.wgsl"),
+    ],
 };
 
 /// Distances need full precision: a normal is a difference of neighbouring distances.
@@ -134,7 +145,8 @@ impl ScreenSpace {
         let particles_layout = bind_group_layout(device, "liquid particles", &[Bind::Storage]);
         let solid_layout = bind_group_layout(device, "solid", &[Bind::Texture]);
         let distances_layout = bind_group_layout(device, "distances", &[Bind::Texels, Bind::Texels]);
-        let compose_bindings = [Bind::TextureLayers, Bind::Texture, Bind::Sampler, Bind::Texels];
+        let compose_bindings =
+            [Bind::TextureLayers, Bind::Texture, Bind::Sampler, Bind::TextureLayers, Bind::Texels];
         let compose_layout = bind_group_layout(device, "compose", &compose_bindings);
         let splat_layouts = [globals, &particles_layout];
         let splat = PipelineDesc {
@@ -238,6 +250,7 @@ impl ScreenSpace {
             BindingResource::TextureView(&targets.scenes.view),
             BindingResource::TextureView(&targets.thickness),
             BindingResource::Sampler(&self.sampler),
+            BindingResource::TextureView(&targets.solids.view),
             BindingResource::TextureView(&maps.distances[1]),
         ];
         let group = bind_group(device, "compose", &self.compose_layout, &resources);

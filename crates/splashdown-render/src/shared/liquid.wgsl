@@ -1,9 +1,11 @@
 // Shading of the liquid's surface without tracing rays: Fresnel blend of reflection and refraction,
-// used for the mesh and the screen-space fluid. Needs globals.wgsl, environment.wgsl, optics.wgsl, picture_behind.wgsl.
+// used for the mesh and the screen-space fluid. Needs globals.wgsl, environment.wgsl, optics.wgsl, picture_behind.wgsl,
+// bodies_behind.wgsl.
 
 @group(2) @binding(0) var scene_colour: texture_2d_array<f32>; // the picture without the liquid, a layer per tile
 @group(2) @binding(1) var thickness: texture_2d<f32>;      // length of the view ray inside the liquid, m
 @group(2) @binding(2) var scene_sampler: sampler;
+@group(2) @binding(3) var solid: texture_2d_array<f32>;    // relative distance of the nearest body, a layer per tile
 
 // Length in metres of the view ray inside the liquid, at half the resolution. Nothing is read from beyond the
 // picture, which only a tile shows.
@@ -27,17 +29,41 @@ fn wall_ahead(origin: vec3f, direction: vec3f) -> vec2f {
     return nearest;
 }
 
-// A ray that leaves the liquid.
+// Where a ray in the liquid ends.
+const AT_BODY = 0u;     // at a body or the bottom
+const AT_WALL = 1u;     // at a wall of the tank, or after a reflection there
+const AT_SURFACE = 2u;  // at a free surface
+
+// The end of a ray in the liquid.
 struct Leaving {
     origin: vec3f,
     direction: vec3f,
     path: f32,              // length in the liquid, m
-    is_straight: bool,      // whether it ends in the picture behind the liquid
+    end: u32,
 }
 
-// Follows a ray that has entered the liquid. The exit through a free surface is not known: the ray
-// goes straight on to the picture behind. At a wall of the tank it is refracted, or reflected totally up to three
-// times; the bottom of the tank ends it.
+// The view ray ends at a solid if that is at most this much farther than the end of the liquid: over the length in the
+// liquid, over the diagonal of the box, and over the radius of the spheres of a liquid of particles. The thickness of the
+// liquid is less precise than the places of solids.
+const NEAR_END = 1.1;
+const NEAR_END_IN_BOX = 0.02;
+const NEAR_END_IN_SPLATS = 3.0;
+
+// Whether the part of the view ray in the liquid ends at a body, at the bottom or at a wall, and not at a free surface.
+fn ends_at_solid(world: vec3f, path: f32) -> bool {
+    if globals.seen_through == 1u {
+        return true;
+    }
+    let view = normalize(world - globals.eye);
+    let down = bottom_distance(world, view);
+    let in_box = NEAR_END_IN_BOX * length(globals.box_max - globals.box_min);
+    let near = NEAR_END * path + max(in_box, NEAR_END_IN_SPLATS * globals.splat_radius);
+    let at_bottom = down > 0.0 && down < near;
+    return at_bottom || wall_ahead(world, view).x < near || body_towards(world) < relative_to_middle(world) + near;
+}
+
+// Follows a ray that has entered the liquid. At a wall of the tank it is refracted, or reflected totally up to three times; a
+// body or the bottom of the tank ends it. The ray leaves through a free surface after the length of the view ray.
 fn leaving_ray(world: vec3f, bent: vec3f, path: f32) -> Leaving {
     var origin = world;
     var direction = bent;
@@ -59,23 +85,82 @@ fn leaving_ray(world: vec3f, bent: vec3f, path: f32) -> Leaving {
         let outward = sideways * sign(direction[axis]);
         let leaving = refract(direction, -outward, globals.refractive_index);
         if dot(leaving, leaving) > 0.0 {
-            return Leaving(origin, leaving, travelled, false);
+            return Leaving(origin, leaving, travelled, AT_WALL);
         }
         direction -= 2.0 * direction * sideways;
         is_reflected = true;
     }
     let down = bottom_distance(origin, direction);
     let left = max(path - travelled, 0.0);
-    let rest = select(left, min(left, down), down > 0.0);
+    let at_bottom = down > 0.0 && down < left;
+    let rest = select(left, down, at_bottom);
     if is_reflected {
-        return Leaving(origin, direction, travelled + rest, false);
+        return Leaving(origin, direction, travelled + rest, AT_WALL);
     }
-    return Leaving(origin + direction * rest, direction, rest, true);
+    let end = select(AT_SURFACE, AT_BODY, at_bottom || ends_at_solid(world, path));
+    return Leaving(origin + direction * rest, direction, rest, end);
 }
 
-// Colour of the liquid at the surface point `world`, with `path` metres of liquid behind it. The
-// normal may have any length.
-fn liquid_colour(world: vec3f, outward: vec3f, path: f32) -> vec3f {
+// The place where the view ray of a pixel leaves the liquid, relative to the eye, if it enters in the plane through a
+// point.
+fn exit_of(pixel: vec2f, from_eye: vec3f, normal: vec3f) -> vec3f {
+    let ray = normalize(view_ray(pixel));
+    let distance = length(from_eye);
+    let entry = clamp(dot(from_eye, normal) / min(dot(ray, normal), -0.05), 0.5 * distance, 2.0 * distance);
+    return ray * (entry + liquid_path(pixel));
+}
+
+// Largest distance in pixels at which exit_normal reads the thickness, over the height of the picture; as in frame.rs.
+const EXIT_REACH = 0.03;
+
+// The outward normal of the surface through which the view rays around a pixel leave the liquid: from the differences of
+// its thickness over a part of it, because the thickness is stored in 16-bit floats.
+fn exit_normal(pixel: vec2f, world: vec3f, normal: vec3f, path: f32) -> vec3f {
+    let from_eye = world - globals.eye;
+    let across = 0.15 * path / (length(from_eye) * globals.pixel_angle);
+    // Whole pixels have the same place between the texels of the thickness.
+    let step = floor(clamp(across, 2.0, max(EXIT_REACH * globals.picture_size.y, 2.0)));
+    let right = vec2f(step, 0.0);
+    let low = vec2f(0.0, step);
+    let a = exit_of(pixel + right, from_eye, normal) - exit_of(pixel - right, from_eye, normal);
+    let b = exit_of(pixel + low, from_eye, normal) - exit_of(pixel - low, from_eye, normal);
+    let found = normalize(cross(a, b));
+    return select(-found, found, dot(found, from_eye) > 0.0);
+}
+
+// Mean light of bubbles over that of white foam; see foam.wgsl.
+const BUBBLES = 0.9;
+
+// The light that a ray brings from where it leaves the liquid: that of the picture behind the liquid, where the place that it
+// meets is known, and otherwise that of the environment.
+fn light_behind(pixel: vec2f, world: vec3f, normal: vec3f, leaving: Leaving) -> vec3f {
+    var place = leaving.origin;
+    var direction = leaving.direction;
+    var is_known = leaving.end == AT_BODY;
+    if is_known && body_towards(place) < relative_to_middle(world) {
+        // A body in front of the surface hides the place.
+        place = world;
+    }
+    if leaving.end == AT_SURFACE {
+        let outward = exit_normal(pixel, world, normal, leaving.path);
+        let refracted = refract(direction, -outward, globals.refractive_index);
+        // Total reflection: nothing is known about further ways in the liquid.
+        direction = select(reflect(direction, outward), refracted, dot(refracted, refracted) > 0.0);
+        let ahead = body_ahead(place, direction);
+        is_known = ahead > 0.0;
+        place += direction * max(ahead, 0.0);
+    }
+    // At the end, once each: a software driver evaluates both.
+    let seen = scene_at(place);
+    if is_known {
+        return seen.rgb;
+    }
+    return mix(BUBBLES * globals.foam_light, environment(place, direction, 6.0 * globals.pixel_angle), seen.a);
+}
+
+// Colour of the liquid in a pixel at the surface point `world`. The normal may have any length.
+fn liquid_colour(pixel: vec2f, world: vec3f, outward: vec3f) -> vec3f {
+    let path = liquid_path(pixel);
     let to_eye = normalize(globals.eye - world);
     let normal = facing_normal(outward, to_eye);
     let facing = max(dot(normal, to_eye), 0.0);
@@ -84,13 +169,7 @@ fn liquid_colour(world: vec3f, outward: vec3f, path: f32) -> vec3f {
 
     let bent = refract(-to_eye, normal, 1.0 / globals.refractive_index);
     let leaving = leaving_ray(world, bent, path);
-    // Here and not in the loop of leaving_ray: a software driver would evaluate it in every turn.
-    var behind: vec3f;
-    if leaving.is_straight {
-        behind = scene_at(leaving.origin);
-    } else {
-        behind = environment(leaving.origin, leaving.direction, 6.0 * globals.pixel_angle);
-    }
+    let behind = light_behind(pixel, world, normal, leaving);
 
     // Absorption along the path (Beer-Lambert), and light scattered back by a turbid liquid.
     let transmittance = exp(-globals.liquid_absorption * leaving.path);

@@ -38,7 +38,9 @@
 use crate::SurfaceBuffers;
 use crate::pipeline::{Bind, Depth, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
 use crate::recorder::Recorder;
-use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, PICTURE_BEHIND, Shader};
+use crate::shader::{
+    BODIES_BEHIND, ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, PICTURE_BEHIND, Shader,
+};
 use crate::targets::{NORMAL_FORMAT, Targets};
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, Device, Face, RenderPipeline, Sampler, TextureFormat,
@@ -66,6 +68,7 @@ pub(crate) const SHADE_ONE: Shader = Shader {
         ENVIRONMENT,
         OPTICS,
         PICTURE_BEHIND,
+        BODIES_BEHIND,
         LIQUID,
         NORMAL_CODE,
         ONE_SAMPLE,
@@ -81,6 +84,7 @@ pub(crate) const SHADE_FOUR: Shader = Shader {
         ENVIRONMENT,
         OPTICS,
         PICTURE_BEHIND,
+        BODIES_BEHIND,
         LIQUID,
         NORMAL_CODE,
         FOUR_SAMPLES,
@@ -114,7 +118,7 @@ impl Deferred {
         samples: u32,
     ) -> Deferred {
         let multisampled = samples > 1;
-        let behind_bindings = [Bind::TextureLayers, Bind::Texture, Bind::Sampler];
+        let behind_bindings = [Bind::TextureLayers, Bind::Texture, Bind::Sampler, Bind::TextureLayers];
         let behind_layout = bind_group_layout(device, "behind the liquid", &behind_bindings);
         let stored_bindings = [Bind::Integers { multisampled }, Bind::Depths { multisampled }];
         let stored_layout = bind_group_layout(device, "stored surface", &stored_bindings);
@@ -168,6 +172,7 @@ impl Deferred {
             BindingResource::TextureView(&targets.scenes.view),
             BindingResource::TextureView(&targets.thickness),
             BindingResource::Sampler(&self.sampler),
+            BindingResource::TextureView(&targets.solids.view),
         ];
         let behind = bind_group(device, "behind the liquid", &self.behind_layout, &behind);
         let stored = [&mesh.normals, &targets.depth].map(BindingResource::TextureView);

@@ -5,10 +5,11 @@
 //!
 //! * *Reflection*: the reflected ray samples the same procedural environment as the background.
 //! * *Refraction*: the walls of the tank are known, so that a ray that meets one inside the liquid is
-//!   refracted there or reflected totally, up to three times. Other rays end after the length of the
-//!   view ray inside the liquid, or at the floor, in a texture with the picture without the liquid.
-//!   Light is absorbed along the path (Beer-Lambert), and the liquid's own colour increases with
-//!   depth.
+//!   refracted there or reflected totally, up to three times. Where the view ray ends at a body or at the
+//!   bottom, the refracted one ends after the same length in a texture with the picture without the
+//!   liquid. Elsewhere it leaves through a free surface, whose normal follows from the thickness in
+//!   the pixels around, and is refracted again. Light is absorbed along the path (Beer-Lambert), and
+//!   the liquid's own colour increases with depth.
 //! * *Fresnel*: the exact equations for a dielectric and unpolarised light weight the two. A rough
 //!   highlight of the sun (GGX, Walter et al. 2007) is added.
 //!
@@ -25,12 +26,10 @@
 //! fine mesh would be black.
 //!
 //! # Why not the other way
+//! Without the second refraction a jet in the air is invisible: it shows what is behind it.
 //! Ray tracing the mesh would be correct for drops in front of drops, but is too slow without a
 //! GPU. Depth peeling needs a pass per layer. Here only the nearest layer is shaded; the layers
 //! behind it contribute to the sum.
-//!
-//! # Things we might try
-//! A second refraction where the ray leaves the liquid through a free surface.
 
 pub(crate) mod deferred;
 

@@ -1,5 +1,5 @@
 // Shades the stored surface once per pixel. Needs globals.wgsl, fullscreen.wgsl, environment.wgsl,
-// optics.wgsl, liquid.wgsl, stored.wgsl.
+// optics.wgsl, bodies_behind.wgsl, liquid.wgsl, stored.wgsl.
 
 // Samples of a pixel are shaded together if the cosine between their normals is above this value, an
 // angle of one degree, and if their depths differ by less than this ratio. A surface at a grazing
@@ -10,7 +10,6 @@ const SAME_DEPTH = 0.03;
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
-    let path = liquid_path(position.xy);
     let ray = view_ray(position.xy);
     let covered = covered_samples(pixel);
     var colour = vec3f(0.0);
@@ -36,7 +35,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
             }
         }
         let world = globals.eye + ray * (globals.near * count / depth);
-        colour += count * liquid_colour(world, normal, path);
+        colour += count * liquid_colour(position.xy, world, normal);
     }
     return vec4f(colour / f32(max(countOneBits(covered), 1u)), 1.0);
 }
