@@ -2,7 +2,7 @@
 
 use crate::glass::panes_of;
 use crate::globals::{EdgeGlobals, Globals};
-use crate::tiling::{self, Tile};
+use crate::tiling::{Tile, around_exit, exit_reach};
 use crate::{
     BodyBuffers, Camera, Domain, DrawnDroplets, DrawnFoam, DrawnLiquidParticles, DrawnParticles, DrawnSlice,
     DrawnSurface, Floor, Quality, RenderError, Sky, SurfaceStyle, Tank, TracedMeshes,
@@ -216,7 +216,7 @@ impl<'a> Frame<'a> {
         if !self.has_liquid() || self.traced_samples().is_some() {
             return Ok(0);
         }
-        let around_exit = tiling::around_exit(size);
+        let around_exit = around_exit(size);
         let Some(drawn) = &self.liquid_particles else { return Ok(around_exit) };
         let view = self.camera.view(size[0] as f32 / size[1] as f32)?;
         let pixel_angle = 2.0 * view.up.length() / size[1] as f32;
@@ -264,7 +264,7 @@ impl<'a> Frame<'a> {
             glass: if self.domain.contains(view.eye) { [0; 4] } else { panes },
             sample_count: 1,
             // The positions of particles and of the plane behind the liquid are not known.
-            seen_through: u32::from(self.particles.is_some() || self.slice.is_some()),
+            exit_reach: if self.particles.is_some() || self.slice.is_some() { 0.0 } else { exit_reach(size) },
             line_width: (1.5 * scale).clamp(1.0, 8.0),
             ..Globals::default()
         };

@@ -95,7 +95,7 @@ pub(crate) struct Globals {
     pub tile_stride: [f32; 2],
     pub tile_grid: [f32; 2],
     pub tile_border: f32,
-    pub seen_through: u32,
+    pub exit_reach: f32,
     pub edges: [EdgeGlobals; 12],
 }
 
@@ -136,7 +136,7 @@ mod tests {
             slice_full slice_low slice_scale splat_margin foam_radius droplet_radius droplet_shutter water_root body_root foam_light foam_shutter ray_shift linear_output glass
             zenith floor_pattern horizon cloud_cover clouds cloud_opacity sun_light ray_offset sky_light
             contact_distance glow sample haze sample_count hills shutter_time floor_tint glass_thickness bounced
-            sunlit_panes body_heights tile_corner target_size tile_stride tile_grid tile_border seen_through edges);
+            sunlit_panes body_heights tile_corner target_size tile_stride tile_grid tile_border exit_reach edges);
         let edge = layout!(EdgeGlobals: start opacity end dashes);
         let owned =
             |layout: &[(&str, usize)]| layout.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect::<Vec<_>>();

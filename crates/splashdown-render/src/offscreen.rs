@@ -3,7 +3,8 @@
 use crate::readback::{self, ReadBack};
 use crate::renderer::Extent;
 use crate::tiling::{
-    BYTES_PER_PIXEL, MAX_PIXELS, MAX_SIDE, MOST_PIXELS, Tile, Tiling, Visible, check_picture, texture_size,
+    BYTES_PER_PIXEL, MAX_PIXELS, MAX_SIDE, MOST_PIXELS, Tile, Tiling, Visible, check_picture,
+    pixels_of_tiles, texture_size,
 };
 use crate::{Frame, RenderError, Renderer, Ticket};
 use std::ops::Range;
@@ -18,7 +19,7 @@ use wgpu::{
 /// Up to [`Offscreen::FRAMES_IN_FLIGHT`] pictures can be submitted before the first is collected,
 /// so that the GPU draws while the host simulates, encodes or writes.
 ///
-/// Pictures of more than 8 million pixels, or larger than a texture of the device, are drawn in tiles. The result
+/// Pictures of more than 9 million pixels, or larger than a texture of the device, are drawn in tiles. The result
 /// is that of a picture in one piece; only single pixels at outlines differ by rounding. Submitting such a
 /// picture waits for it.
 #[derive(Debug)]
@@ -37,6 +38,9 @@ pub struct Offscreen {
     #[cfg(test)]
     border: Option<u32>,
 }
+
+/// Side of the textures that every device has: the default limit of WebGPU.
+const LEAST_SIDE: u32 = 8192;
 
 /// Memory for drawing pictures, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,7 +150,9 @@ impl Offscreen {
     pub fn memory_forecast([width, height]: [u32; 2]) -> MemoryForecast {
         let pixels = u64::from(width) * u64::from(height);
         let tile = pixels.min(MOST_PIXELS);
-        let scenes = if pixels > tile { 9 * pixels / 2 } else { 0 };
+        // Four bytes of a scene, and two of a distance at half the resolution.
+        let of_tiles = 9 * pixels_of_tiles([width, height], LEAST_SIDE) / 2;
+        let scenes = if pixels > tile { of_tiles } else { 0 };
         MemoryForecast { host: 12 * pixels, device: BYTES_PER_PIXEL * tile + scenes }
     }
 

@@ -12,7 +12,7 @@
 //! the filters of a liquid of particles.
 //!
 //! *Refraction* without traced rays reads the picture behind the liquid, and the distances of bodies, anywhere.
-//! The scenes of all tiles are therefore drawn first, into the layers of one texture; see `Targets::scenes` and
+//! The scenes of all tiles are therefore drawn first, into the layers of two textures; see `Targets::scenes` and
 //! `shared/picture_behind.wgsl`.
 //!
 //! With lavapipe a tiled picture equals the same picture in one piece but for single pixels at outlines,
@@ -35,14 +35,15 @@ pub(crate) const MAX_SIDE: u32 = 32_768;
 /// Largest number of pixels of a picture that is read back: 1 GiB of RGBA.
 pub(crate) const MAX_PIXELS: u64 = 1 << 28;
 /// Largest number of pixels of a tile. Pictures of 3840 x 2160 are not divided.
-pub(crate) const MOST_PIXELS: u64 = 1 << 23;
+pub(crate) const MOST_PIXELS: u64 = 9_000_000;
 /// What a tile takes on the device with four samples per pixel: `targets.rs`, the result and its read-back.
 pub(crate) const BYTES_PER_PIXEL: u64 = 80;
 /// One texel of the thickness of the liquid.
 const LEAST_BORDER: u32 = 2;
-/// Largest distance in pixels at which the normal of the far side of a liquid reads its thickness, over the height of
-/// the picture; as in `shared/liquid.wgsl`.
+/// Largest distance at which the normal of the far side of a liquid reads its thickness, over the height of the picture.
 const EXIT_REACH: f32 = 0.03;
+/// And in pixels, so that the border of tiles remains small.
+const LARGEST_EXIT_REACH: f32 = 32.0;
 
 /// How a picture is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,10 +85,21 @@ pub(crate) fn check_picture([width, height]: [u32; 2]) -> Result<(), RenderError
     Ok(())
 }
 
+/// Largest distance in whole pixels at which the normal of the far side of a liquid reads its thickness.
+pub(crate) fn exit_reach([_, height]: [u32; 2]) -> f32 {
+    (EXIT_REACH * height as f32).clamp(2.0, LARGEST_EXIT_REACH).floor()
+}
+
 /// Pixels around a tile of a picture of this size from which the normal of the far side of a liquid follows.
-pub(crate) fn around_exit([_, height]: [u32; 2]) -> u32 {
-    let reach = (EXIT_REACH * height as f32).ceil().max(2.0) as u32;
-    (reach + LEAST_BORDER).next_multiple_of(2)
+pub(crate) fn around_exit(picture: [u32; 2]) -> u32 {
+    (exit_reach(picture) as u32 + LEAST_BORDER).next_multiple_of(2)
+}
+
+/// The largest number of pixels of all tiles of a picture together, with their borders, on a device with textures of at
+/// least `side` pixels.
+pub(crate) fn pixels_of_tiles(picture: [u32; 2], side: u32) -> u64 {
+    let tiling = Tiling::new(picture, texture_size(picture, side), around_exit(picture));
+    u64::from(tiling.count()) * u64::from(tiling.texture[0]) * u64::from(tiling.texture[1])
 }
 
 /// The size of the textures for a picture, on a device with this largest side of a texture.
@@ -195,6 +207,8 @@ impl Tile {
         globals.tile_grid = pair(self.tiling.grid);
         globals.tile_border = self.tiling.border as f32;
         if self.tiling.count() > 1 {
+            let in_border = self.tiling.border.saturating_sub(LEAST_BORDER).max(1) as f32;
+            globals.exit_reach = globals.exit_reach.min(in_border);
             let clip_from_world =
                 self.target_from_picture() * Mat4::from_cols_array_2d(&globals.clip_from_world);
             globals.clip_from_world = clip_from_world.to_cols_array_2d();

@@ -118,7 +118,7 @@ impl Foam {
     ) -> Foam {
         let layout = bind_group_layout(device, "foam", &[Bind::Storage]);
         let layouts = [globals, environment, &layout];
-        // In the order of `Kinds`: a mask with a bit per kind, and the target.
+        // In the order of `Kinds`: a mask with a bit per kind, the target, and the blending.
         let pipelines =
             [(4.0, format, DIMMING), (3.0, LAYER_FORMAT, PREMULTIPLIED), (7.0, LAYER_FORMAT, PREMULTIPLIED)];
         let pipelines = pipelines.map(|(kinds, format, blend)| {
@@ -140,7 +140,8 @@ impl Foam {
     }
 
     /// Draws some kinds with one sample per pixel: [`Kinds::UnderWater`] into a texture of the format of the picture, whose
-    /// alpha then is the fraction of the light from behind that passes, the others into one of [`LAYER_FORMAT`]. Expects groups 0 (globals) and 1 (environment) to be bound.
+    /// alpha becomes the fraction of the light from behind that passes, and the others into one of [`LAYER_FORMAT`]. Expects
+    /// groups 0 (globals) and 1 (environment) to be bound.
     pub fn record(&self, pass: &mut RenderPass<'_>, chunks: &[Chunk], kinds: Kinds) {
         if chunks.is_empty() {
             return;

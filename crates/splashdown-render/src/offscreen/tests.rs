@@ -136,10 +136,25 @@ fn a_mesh_with_everything_is_the_same_in_tiles() {
             spray.add_to(frame()).with_surface(drawn).with_bodies(bodies.buffers()).with_caption("t = 1 s");
         let difference = harness.tiled(&frame, None);
         assert!(difference.is_rounding(), "{style:?}: {difference:?}");
-        // Negative control: without the texel of the thickness around the tile.
+        // Negative control: without the border, in which the thickness is read.
         let without = harness.tiled(&frame, Some(0));
         assert!(!without.is_rounding(), "{without:?}");
     }
+}
+
+#[test]
+fn a_drop_and_a_body_behind_it_are_the_same_in_tiles() {
+    let Some(mut harness) = harness() else { return };
+    let drop = harness.surface(&ball([1.0, 0.5, 0.7], 0.25, 64));
+    let body = red_ball();
+    let bodies = UploadedBodies::new(&harness.gpu.device, [(&body, [1.0, 0.35, 0.2], PLACE.1)]);
+    let drawn = DrawnSurface::new(drop.buffers(), Liquid::water());
+    let frame = frame().with_surface(drawn).with_bodies(bodies.buffers());
+    let difference = harness.tiled(&frame, None);
+    assert!(difference.is_rounding(), "{difference:?}");
+    // Negative control: only the texel of the thickness, from which no normal follows.
+    let without = harness.tiled(&frame, Some(2));
+    assert!(!without.is_rounding(), "{without:?}");
 }
 
 #[test]

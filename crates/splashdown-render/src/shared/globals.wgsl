@@ -86,7 +86,7 @@ struct Globals {
     tile_stride: vec2f,     // pixels from a tile to the next
     tile_grid: vec2f,       // number of columns and rows of tiles
     tile_border: f32,       // pixels around a tile that do not belong to it
-    seen_through: u32,      // 1: the far side of the liquid does not refract
+    exit_reach: f32,        // pixels from which the normal of the liquid's far side follows; 0: it does not refract
     edges: array<Edge, 12>,
 }
 

@@ -7,11 +7,14 @@
 @group(2) @binding(2) var scene_sampler: sampler;
 @group(2) @binding(3) var solid: texture_2d_array<f32>;    // relative distance of the nearest body, a layer per tile
 
-// Length in metres of the view ray inside the liquid, at half the resolution. Nothing is read from beyond the
-// picture, which only a tile shows.
+// A place of the target, moved into the picture: only a tile shows what is around it.
+fn in_picture(pixel: vec2f) -> vec2f {
+    return clamp(pixel + globals.tile_corner, vec2f(1.0), globals.picture_size - 1.0) - globals.tile_corner;
+}
+
+// Length in metres of the view ray inside the liquid, at half the resolution.
 fn liquid_path(pixel: vec2f) -> f32 {
-    let in_picture = clamp(pixel + globals.tile_corner, vec2f(1.0), globals.picture_size - 1.0);
-    let uv = (in_picture - globals.tile_corner) / globals.target_size;
+    let uv = in_picture(pixel) / globals.target_size;
     return max(textureSampleLevel(thickness, scene_sampler, uv, 0.0).r, 0.0);
 }
 
@@ -30,7 +33,7 @@ fn wall_ahead(origin: vec3f, direction: vec3f) -> vec2f {
 }
 
 // Where a ray in the liquid ends.
-const AT_BODY = 0u;     // at a body or the bottom
+const IN_PICTURE = 0u;  // at a place that the picture behind the liquid shows
 const AT_WALL = 1u;     // at a wall of the tank, or after a reflection there
 const AT_SURFACE = 2u;  // at a free surface
 
@@ -49,9 +52,10 @@ const NEAR_END = 1.1;
 const NEAR_END_IN_BOX = 0.02;
 const NEAR_END_IN_SPLATS = 3.0;
 
-// Whether the part of the view ray in the liquid ends at a body, at the bottom or at a wall, and not at a free surface.
+// Whether the part of the view ray in the liquid ends at a body, at the bottom or at a wall, and not at a free surface
+// that refracts it.
 fn ends_at_solid(world: vec3f, path: f32) -> bool {
-    if globals.seen_through == 1u {
+    if globals.exit_reach == 0.0 {
         return true;
     }
     let view = normalize(world - globals.eye);
@@ -97,35 +101,33 @@ fn leaving_ray(world: vec3f, bent: vec3f, path: f32) -> Leaving {
     if is_reflected {
         return Leaving(origin, direction, travelled + rest, AT_WALL);
     }
-    let end = select(AT_SURFACE, AT_BODY, at_bottom || ends_at_solid(world, path));
+    let end = select(AT_SURFACE, IN_PICTURE, at_bottom || ends_at_solid(world, path));
     return Leaving(origin + direction * rest, direction, rest, end);
 }
 
 // The place where the view ray of a pixel leaves the liquid, relative to the eye, if it enters in the plane through a
 // point.
 fn exit_of(pixel: vec2f, from_eye: vec3f, normal: vec3f) -> vec3f {
-    let ray = normalize(view_ray(pixel));
+    let place = in_picture(pixel);
+    let ray = normalize(view_ray(place));
     let distance = length(from_eye);
     let entry = clamp(dot(from_eye, normal) / min(dot(ray, normal), -0.05), 0.5 * distance, 2.0 * distance);
-    return ray * (entry + liquid_path(pixel));
+    return ray * (entry + liquid_path(place));
 }
 
-// Largest distance in pixels at which exit_normal reads the thickness, over the height of the picture; as in frame.rs.
-const EXIT_REACH = 0.03;
-
-// The outward normal of the surface through which the view rays around a pixel leave the liquid: from the differences of
-// its thickness over a part of it, because the thickness is stored in 16-bit floats.
-fn exit_normal(pixel: vec2f, world: vec3f, normal: vec3f, path: f32) -> vec3f {
+// The outward normal of the surface through which a ray in this direction leaves the liquid: from the differences of the
+// exits of the view rays around a pixel. They are a part of the thickness apart, because it is stored in 16-bit floats.
+fn exit_normal(pixel: vec2f, world: vec3f, normal: vec3f, direction: vec3f, path: f32) -> vec3f {
     let from_eye = world - globals.eye;
-    let across = 0.15 * path / (length(from_eye) * globals.pixel_angle);
+    let pixel_size = length(from_eye) * globals.pixel_angle;
     // Whole pixels have the same place between the texels of the thickness.
-    let step = floor(clamp(across, 2.0, max(EXIT_REACH * globals.picture_size.y, 2.0)));
+    let step = floor(clamp(0.15 * path / pixel_size, min(2.0, globals.exit_reach), globals.exit_reach));
     let right = vec2f(step, 0.0);
     let low = vec2f(0.0, step);
     let a = exit_of(pixel + right, from_eye, normal) - exit_of(pixel - right, from_eye, normal);
     let b = exit_of(pixel + low, from_eye, normal) - exit_of(pixel - low, from_eye, normal);
-    let found = normalize(cross(a, b));
-    return select(-found, found, dot(found, from_eye) > 0.0);
+    // Without units, so that the smallest scenes have a normal.
+    return facing_normal(cross(a / pixel_size, b / pixel_size), direction);
 }
 
 // Mean light of bubbles over that of white foam; see foam.wgsl.
@@ -136,13 +138,13 @@ const BUBBLES = 0.9;
 fn light_behind(pixel: vec2f, world: vec3f, normal: vec3f, leaving: Leaving) -> vec3f {
     var place = leaving.origin;
     var direction = leaving.direction;
-    var is_known = leaving.end == AT_BODY;
+    var is_known = leaving.end == IN_PICTURE;
     if is_known && body_towards(place) < relative_to_middle(world) {
         // A body in front of the surface hides the place.
         place = world;
     }
     if leaving.end == AT_SURFACE {
-        let outward = exit_normal(pixel, world, normal, leaving.path);
+        let outward = exit_normal(pixel, world, normal, direction, leaving.path);
         let refracted = refract(direction, -outward, globals.refractive_index);
         // Total reflection: nothing is known about further ways in the liquid.
         direction = select(reflect(direction, outward), refracted, dot(refracted, refracted) > 0.0);
