@@ -48,7 +48,7 @@ struct Leaving {
 // The view ray ends at a solid if that is at most this much farther than the end of the liquid: over the length in the
 // liquid, over the diagonal of the box, and over the radius of the spheres of a liquid of particles. The thickness of the
 // liquid is less precise than the places of solids.
-const NEAR_END = 1.1;
+const NEAR_END = 2.0;
 const NEAR_END_IN_BOX = 0.02;
 const NEAR_END_IN_SPLATS = 3.0;
 
@@ -133,15 +133,50 @@ fn exit_normal(pixel: vec2f, world: vec3f, normal: vec3f, direction: vec3f, path
 // Mean light of bubbles over that of white foam; see foam.wgsl.
 const BUBBLES = 0.9;
 
+// How often the end of a ray is corrected with the distance of the body that it may meet.
+const CORRECTIONS = 3;
+
+// A place on a ray, and whether the picture behind the liquid shows it.
+struct Place {
+    world: vec3f,
+    is_shown: bool,
+}
+
+// Where a ray in the liquid ends, if the view ray is `path` m long and ends at a body, at the bottom or at a wall. The ray
+// may meet a body that the view ray misses, and the other way round.
+fn end_in_liquid(world: vec3f, direction: vec3f, path: f32) -> Place {
+    let slack = NEAR_END_IN_BOX * length(globals.box_max - globals.box_min);
+    let down = bottom_distance(world, direction);
+    let farthest = min(select(1e30, down, down > 0.0), wall_ahead(world, direction).x);
+    let end = select(path, farthest, farthest < 1e29);
+    var travelled = path;
+    for (var turn = 0; turn < CORRECTIONS; turn++) {
+        let place = world + direction * travelled;
+        // How far the place is behind the body that the picture shows there.
+        let behind = relative_to_middle(place) - body_towards(place);
+        if abs(behind) < slack {
+            return Place(place, true);
+        }
+        travelled -= behind;
+        if travelled < 0.0 || travelled > end {
+            break;
+        }
+    }
+    let place = world + direction * end;
+    return Place(place, relative_to_middle(place) - body_towards(place) < slack);
+}
+
 // The light that a ray brings from where it leaves the liquid: that of the picture behind the liquid, where the place that it
 // meets is known, and otherwise that of the environment.
 fn light_behind(pixel: vec2f, world: vec3f, normal: vec3f, leaving: Leaving) -> vec3f {
     var place = leaving.origin;
     var direction = leaving.direction;
     var is_known = leaving.end == IN_PICTURE;
-    if is_known && body_towards(place) < relative_to_middle(world) {
-        // A body in front of the surface hides the place.
-        place = world;
+    if is_known && globals.exit_reach > 0.0 {
+        let end = end_in_liquid(world, direction, leaving.path);
+        // The floor is known without the picture too.
+        place = select(world, end.world, end.is_shown);
+        is_known = end.is_shown;
     }
     if leaving.end == AT_SURFACE {
         let outward = exit_normal(pixel, world, normal, direction, leaving.path);
@@ -149,8 +184,14 @@ fn light_behind(pixel: vec2f, world: vec3f, normal: vec3f, leaving: Leaving) -> 
         // Total reflection: nothing is known about further ways in the liquid.
         direction = select(reflect(direction, outward), refracted, dot(refracted, refracted) > 0.0);
         let ahead = body_ahead(place, direction);
-        is_known = ahead > 0.0;
-        place += direction * max(ahead, 0.0);
+        let to_floor = floor_distance(place, direction);
+        let on_floor = place + direction * to_floor;
+        // A body that hides the place on the floor from the eye probably hides it from the ray as well.
+        let hiding = body_towards(on_floor);
+        let is_hidden =
+            to_floor > 0.0 && hiding < relative_to_middle(on_floor) && hiding > relative_to_middle(place);
+        is_known = ahead > 0.0 || is_hidden;
+        place += direction * select(select(0.0, to_floor, is_hidden), ahead, ahead > 0.0);
     }
     // At the end, once each: a software driver evaluates both.
     let seen = scene_at(place);

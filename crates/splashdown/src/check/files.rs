@@ -4,7 +4,7 @@ use glam::Vec3;
 use splashdown_io::{Mesh, Particles};
 
 use super::placed::Placed;
-use super::{Built, flow, motion};
+use super::{Built, flow, motion, obstacles};
 use crate::bodies::{check_scale, mesh_of, owner};
 use crate::flow::LoadedFlow;
 use crate::sample::{
@@ -22,7 +22,12 @@ const POSES: u32 = 200;
 /// Reads all meshes and particle files of a scene and reports each problem with its line. The scene keeps the
 /// results for the simulation.
 pub(super) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
-    let (bodies, meshes, placed) = check_bodies(scene, &root.sections_if_any("body")?);
+    let sections = root.sections_if_any("body")?;
+    let (bodies, meshes, placed) = check_bodies(scene, &sections);
+    if bodies.is_ok() {
+        obstacles::warn_of_overlaps(scene, &placed, &sections);
+    }
+    obstacles::warn_of_gauges(scene, &placed, &root.sections_if_any("probe")?);
     let mut loaded = LoadedFlow::default();
     let emitters = flow::check_emitters(scene, &mut loaded, &root.sections_if_any("emitter")?, &placed);
     let sinks = flow::check_sinks(scene, &mut loaded, &root.sections_if_any("sink")?);

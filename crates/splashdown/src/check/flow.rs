@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::obstacles;
 use super::placed::Placed;
 use crate::flow::{LoadedFlow, outlet};
 use crate::scene::{Emitter, Motion, Reported, Scene, Section, outlet_outside};
@@ -41,6 +42,7 @@ fn check_emitter(
     if points.iter().any(|x| x.cmplt(domain.min - slack).any() || x.cmpgt(domain.max + slack).any()) {
         return Err(outlet_outside(section, emitter, domain));
     }
+    obstacles::warn_of_walls(scene, emitter, section);
     for placed in bodies {
         let inside = points.iter().filter(|x| placed.contains(**x)).count();
         if 2 * inside <= points.len() {

@@ -11,6 +11,7 @@ mod flow;
 mod load;
 mod located;
 mod motion;
+mod obstacles;
 mod placed;
 mod reference;
 mod resolution;

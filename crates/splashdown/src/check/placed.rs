@@ -35,6 +35,22 @@ impl<'a> Placed<'a> {
         Self { body, triangles: mesh.triangles.iter().map(|t| t.map(corner)).collect(), low, high }
     }
 
+    /// The number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// At most `most` corners and middles of triangles, moved towards the middle of the body by `inwards` m.
+    pub fn points(&self, inwards: f32, most: usize) -> impl Iterator<Item = Vec3> {
+        let middle = 0.5 * (self.low + self.high);
+        let every = (4 * self.triangles.len()).div_ceil(most.max(1)).max(1);
+        let points = self.triangles.iter().flat_map(|[a, b, c]| [*a, *b, *c, (*a + *b + *c) / 3.0]);
+        points.step_by(every).map(move |point| {
+            let way = middle - point;
+            point + way.clamp_length_max(inwards)
+        })
+    }
+
     /// Whether a point lies inside the mesh, for either orientation of its triangles.
     pub fn contains(&self, x: Vec3) -> bool {
         if x.cmplt(self.low).any() || x.cmpgt(self.high).any() {

@@ -42,6 +42,11 @@ impl LoadedFlow {
         self.nozzles[emitter].length
     }
 
+    /// The length of the longest nozzle in m.
+    pub(crate) fn longest_nozzle(&self) -> f32 {
+        self.nozzles.iter().map(|nozzle| nozzle.length).fold(0.0, f32::max)
+    }
+
     /// The part of a nozzle's columns for which `test` holds.
     fn share(&self, nozzle: &Nozzle, test: impl Fn(&[Vec3]) -> bool) -> f32 {
         let points = &self.points[nozzle.first_point as usize..][..nozzle.points as usize];

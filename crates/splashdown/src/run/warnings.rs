@@ -1,6 +1,7 @@
 //! Warnings of a run: lost particles and bodies, and the alarms of the monitor.
 
 use super::{Event, Run, Stage};
+use crate::check::Built;
 use crate::monitor::{Alarm, Level};
 use crate::scene::OnBurst;
 use crate::{BodyState, SimulationError, Stats};
@@ -65,9 +66,12 @@ impl Run {
         if planned < MANY_EMITTED || share > MOST_BLOCKED || self.frames < self.scene_frames {
             return;
         }
+        let scene = self.simulation.scene();
+        let length = Built::of(scene).flow(scene).map_or(0.0, |flow| flow.longest_nozzle());
         let text = format!(
-            "the emitters have added {} particles, {:.0} % of the {planned} of their flow: there was no room in front of a \
-             nozzle. Move nozzles out of the water, or make room in front of them",
+            "the emitters have added {} particles, {:.0} % of the {planned} of their flow: there was no room in a nozzle, \
+             which begins {length:.3} m behind its outlet, or in front of it. Move nozzles out of the water with all of \
+             this length, or make room in front of them",
             stats.emitted,
             100.0 * share
         );

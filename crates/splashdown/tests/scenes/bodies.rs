@@ -406,3 +406,37 @@ fn an_open_fluid_mesh_can_be_filled() {
     let refused = load("shell = true").unwrap_err().to_string();
     assert!(refused.contains("encloses no volume"), "{refused}");
 }
+
+#[test]
+fn dynamic_bodies_that_overlap_at_the_start_are_reported() {
+    let second = |motion: &str, x: f32| {
+        let body = format!(
+            "motion = \"dynamic\"\ndensity = 500\nscale = 0.2\nposition = [1.5, 0.7, 0.5]\n\
+             [[body]]\nname = \"c\"\nmesh = \"cube\"\nscale = 0.2\nposition = [{x}, 0.7, 0.5]\n{motion}"
+        );
+        warnings("", &body).into_iter().filter(|text| text.contains("overlaps body")).collect::<Vec<_>>()
+    };
+    let dynamic = "motion = \"dynamic\"\ndensity = 500";
+    // Once, whatever the motion of the other one is.
+    for motion in [dynamic, ""] {
+        let found = second(motion, 1.6);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains("at the start"), "{found:?}");
+    }
+    // Control: cubes that touch, but for rounding.
+    assert_eq!(second(dynamic, 1.6999), [""; 0]);
+}
+
+#[test]
+fn gauges_deep_in_a_body_are_reported() {
+    let gauge = |y: f32| {
+        let body = format!(
+            "scale = 0.4\nposition = [1, 0.3, 0.5]\n\
+             [[probe]]\nname = \"p\"\nquantity = \"pressure\"\nposition = [1, {y}, 0.5]"
+        );
+        warnings("", &body).iter().any(|text| text.contains("probe \"p\" lies in body \"b\""))
+    };
+    assert!(gauge(0.3));
+    // Control: at the surface, just below it, and above it.
+    assert!(!gauge(0.5) && !gauge(0.48) && !gauge(0.6));
+}

@@ -191,3 +191,17 @@ fn outlets_that_cross_are_reported() {
     );
     assert!(!warnings(&tap).iter().any(|text| text.contains("cross")));
 }
+
+#[test]
+fn an_outlet_in_front_of_a_wall_is_reported() {
+    let reported = |y: f32, direction: &str| {
+        let text = TAP
+            .replace("position = [0.5, 0.9, 0.5]", &format!("position = [0.5, {y}, 0.5]"))
+            .replace("direction = [0, -2, 0]", &format!("direction = {direction}"));
+        warnings(&text).iter().any(|text| text.contains("points at the wall y_min"))
+    };
+    assert!(reported(0.05, "[0, -1, 0]"));
+    // Control: with room, along the wall, and out of it.
+    assert!(!reported(0.5, "[0, -1, 0]"));
+    assert!(!reported(0.12, "[1, 0, 0]") && !reported(0.05, "[0, 1, 0]"));
+}
