@@ -132,7 +132,13 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
             Err(_) if ![1, 3].iter().any(|&n| Wanted::Known.has(own, n)) => continue,
             Err(reason) => return Err(malformed(reason)),
         };
-        if !wanted.has(own, columns) || values.len() / columns.max(1) != count {
+        let rows = values.len() / columns.max(1);
+        if rows != count && Wanted::Known.has(own, columns) {
+            return Err(malformed(format!(
+                "array `{name}` has {rows} rows, but there are {count} positions"
+            )));
+        }
+        if !wanted.has(own, columns) || rows != count {
             continue;
         }
         wanted

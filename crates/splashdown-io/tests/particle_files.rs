@@ -381,10 +381,10 @@ fn packed_npz(given: &Particles) -> Vec<u8> {
     let positions: Vec<u8> =
         given.positions.iter().flatten().flat_map(|&v| f64::from(v).to_le_bytes()).collect();
     let ids: Vec<u8> = given.ids.iter().flat_map(|&id| i64::from(id).to_le_bytes()).collect();
-    let unrelated = vec![0; 2 * 5];
+    let (unrelated, m) = (vec![0; 2 * 5], given.ids.len());
     for (name, kind, shape, data) in [
         ("pos", "<f8", format!("({n}, 3)"), positions),
-        ("ID", "<i8", format!("({n},)"), ids),
+        ("ID", "<i8", format!("({m},)"), ids),
         ("colour", "|u1", "(2, 5)".to_owned(), unrelated),
     ] {
         let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}\n");
@@ -404,6 +404,8 @@ fn archives_of_numpy_are_read() {
     let wanted = Particles::from_positions(given.positions.clone()).with_ids(given.ids.clone());
     assert_eq!(read("packed.npz", &bytes).unwrap(), wanted);
     refused("none.npz", &packed_npz(&Particles::default()), "no particles");
+    let shorter = given.clone().with_ids(given.ids[..10].to_vec());
+    refused("rows.npz", &packed_npz(&shorter), "array `ID.npy` has 10 rows, but there are 2500 positions");
     let mut bytes = bytes;
     while let Some(at) = bytes.windows(7).position(|name| name == b"pos.npy") {
         bytes[at..at + 3].copy_from_slice(b"sop");
