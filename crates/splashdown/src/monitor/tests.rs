@@ -310,3 +310,30 @@ fn only_bodies_near_the_fluid_permit_it_to_be_fast() {
     let jump = scripted_speed([0.6, 0.3, 0.8], "move = [\"0.3 * floor(t / 0.1)\", \"0\", \"0\"]");
     assert!(jump < 4.0 * 0.3 / 0.05 + 1.0, "{jump}");
 }
+
+#[test]
+fn corrections_at_a_dynamic_body_advise_shorter_steps() {
+    let body = |name: &str, rest: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmesh = \"sphere\"\nscale = 0.3\nposition = [0.8, 1.2, 0.8]\n{rest}\n"
+        )
+    };
+    let text = format!(
+        "[scene]\nname = \"test\"\nduration = 1\n[domain]\nmin = [0, 0, 0]\nmax = [1.6, 1.6, 1.6]\n\
+         [fluid]\nparticle_spacing = 0.1\n{BLOCK}\n{}{}",
+        body("cork", "motion = \"dynamic\"\ndensity = 300"),
+        body("post", "")
+    );
+    let scene = Scene::parse(&text, "test.toml").unwrap_or_else(|errors| panic!("{errors}"));
+    let context = words::Context::new(&scene, 10.0, 1.0);
+    let message = |name| {
+        let place = Some(Vec3::splat(0.8));
+        let watched = Watched::WallCorrections;
+        let (value, time, body) = (2.0, 1.0, Some((0.0, name)));
+        context.message(&words::Rise { watched, value, time, place, body, allowed_speed: 1.0 })
+    };
+    assert!(message("cork").contains("Lower solver.cfl_factor (now 0.7)"), "{}", message("cork"));
+    // Control: nothing moves a static body.
+    assert!(message("post").contains("parts or gaps thinner"), "{}", message("post"));
+    assert!(!message("post").contains("meets water"), "{}", message("post"));
+}

@@ -12,8 +12,9 @@ pub(super) struct Context {
     domain: crate::scene::Domain,
     /// Names, outlets in m and speeds of the emitters.
     emitters: Vec<(String, Vec3, f32)>,
-    /// Whether a body of this name moves by a script.
+    /// Names of the bodies that move by a script, and of those that the fluid moves.
     scripted: Vec<String>,
+    dynamic: Vec<String>,
     cfl_factor: f32,
     is_integrated: bool,
     pulls_surfaces_together: bool,
@@ -49,13 +50,17 @@ pub(super) fn outliers(count: usize, speed: f64, others: f64, place: Vec3) -> St
 impl Context {
     pub fn new(scene: &Scene, sound_speed: f32, reference_speed: f32) -> Self {
         let spacing = scene.fluid.particle_spacing;
-        let scripted = scene.bodies.iter().filter(|body| matches!(body.motion, Motion::Scripted(_)));
+        let names = |has_motion: fn(&Motion) -> bool| {
+            let bodies = scene.bodies.iter().filter(|body| has_motion(&body.motion));
+            bodies.map(|body| body.name.clone()).collect()
+        };
         let emitters = scene.emitters.iter();
         Self {
             spacing,
             domain: scene.domain.clone(),
             emitters: emitters.map(|one| (one.name.clone(), one.position, one.speed)).collect(),
-            scripted: scripted.map(|body| body.name.clone()).collect(),
+            scripted: names(|motion| matches!(motion, Motion::Scripted(_))),
+            dynamic: names(|motion| matches!(motion, Motion::Dynamic { .. })),
             cfl_factor: scene.solver.cfl_factor,
             is_integrated: scene.solver.method == Method::Wcsph
                 && scene.solver.density == DensityMode::Continuity,
@@ -206,6 +211,11 @@ impl Context {
             Neighbour::Body(name) if self.scripted.contains(name) => format!(
                 "Likely cause: body {name:?} presses water against a wall or another body, or moves too fast for the \
                  resolution. Leave a gap of more than two spacings, slow it down, or lower particle_spacing"
+            ),
+            Neighbour::Body(name) if watched == Watched::WallCorrections && self.dynamic.contains(name) => format!(
+                "Likely cause: body {name:?} meets water or another body fast for the time step, or has parts or gaps thinner than \
+                 two spacings. Lower solver.cfl_factor (now {}), or particle_spacing",
+                self.cfl_factor
             ),
             Neighbour::Body(name) => {
                 // A long step carries a fast, thin stream into a curved surface before pressure acts on it.
