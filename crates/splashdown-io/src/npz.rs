@@ -133,7 +133,8 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
             Err(reason) => return Err(malformed(reason)),
         };
         let rows = values.len() / columns.max(1);
-        if rows != count && Wanted::Known.has(own, columns) {
+        // Uniform values, and names of one letter, may mean something else.
+        if rows != count && rows > 1 && own.len() > 1 && Wanted::Known.has(own, columns) {
             return Err(malformed(format!(
                 "array `{name}` has {rows} rows, but there are {count} positions"
             )));

@@ -151,8 +151,7 @@ impl Offscreen {
         let pixels = u64::from(width) * u64::from(height);
         let tile = pixels.min(MOST_PIXELS);
         // Four bytes of a scene, and two of a distance at half the resolution.
-        let of_tiles = 9 * pixels_of_tiles([width, height], LEAST_SIDE) / 2;
-        let scenes = if pixels > tile { of_tiles } else { 0 };
+        let scenes = 9 * pixels_of_tiles([width, height], LEAST_SIDE) / 2;
         MemoryForecast { host: 12 * pixels, device: BYTES_PER_PIXEL * tile + scenes }
     }
 

@@ -95,10 +95,13 @@ pub(crate) fn around_exit(picture: [u32; 2]) -> u32 {
     (exit_reach(picture) as u32 + LEAST_BORDER).next_multiple_of(2)
 }
 
-/// The largest number of pixels of all tiles of a picture together, with their borders, on a device with textures of at
-/// least `side` pixels.
+/// The number of pixels of all tiles of a picture of a mesh together, with their borders, on a device whose textures have up
+/// to `side` pixels a side; 0 for a picture in one piece.
 pub(crate) fn pixels_of_tiles(picture: [u32; 2], side: u32) -> u64 {
     let tiling = Tiling::new(picture, texture_size(picture, side), around_exit(picture));
+    if tiling.count() == 1 {
+        return 0;
+    }
     u64::from(tiling.count()) * u64::from(tiling.texture[0]) * u64::from(tiling.texture[1])
 }
 

@@ -96,10 +96,10 @@ fn bubbles_in_a_drop_are_visible() {
 fn a_body_behind_a_drop_is_visible_through_it() {
     let Some(mut harness) = common::harness() else { return };
     let ball = surface(&harness, &sample::ball([0.0; 3], 0.8, 64));
-    let red = sample::ball([0.0, 0.0, -2.5], 0.5, 32);
+    let red = sample::ball([0.0, 0.0, -4.5], 0.8, 32);
     let red = PlacedBody::new(&red.vertices, &red.triangles, [0.6, 0.05, 0.05]).unwrap();
     let bodies = UploadedBodies::new(&harness.device, [(&red, [0.0; 3], [0.0, 0.0, 0.0, 1.0])]);
-    // In a larger domain a body that near would count as one at the far side of the liquid.
+    // Farther behind the liquid than twice its length: a nearer body would count as its far side.
     let level = with(level_frame(), |f| f.domain = Domain::closed([-6.0; 3], [6.0; 3]));
     let frame = level.with_surface(DrawnSurface::new(ball.buffers(), clear()));
     // In the middle, where the ray is not refracted.

@@ -45,9 +45,9 @@ struct Leaving {
     end: u32,
 }
 
-// The view ray ends at a solid if that is at most this much farther than the end of the liquid: over the length in the
-// liquid, over the diagonal of the box, and over the radius of the spheres of a liquid of particles. The thickness of the
-// liquid is less precise than the places of solids.
+// The view ray ends at a solid that is at most this far from where it enters the liquid: over its length in the liquid, and
+// in addition over the diagonal of the box or the radius of the spheres of a liquid of particles. The thickness of the liquid
+// is less precise than the places of solids.
 const NEAR_END = 2.0;
 const NEAR_END_IN_BOX = 0.02;
 const NEAR_END_IN_SPLATS = 3.0;
@@ -136,26 +136,33 @@ const BUBBLES = 0.9;
 // How often the end of a ray is corrected with the distance of the body that it may meet.
 const CORRECTIONS = 3;
 
-// A place on a ray, and whether the picture behind the liquid shows it.
+// A place on a ray, its distance along it in m, and whether the picture behind the liquid shows it.
 struct Place {
     world: vec3f,
+    travelled: f32,
     is_shown: bool,
+}
+
+// Distance along a ray inside the box to its sides.
+fn box_exit(origin: vec3f, direction: vec3f) -> f32 {
+    let ahead = select(globals.box_min, globals.box_max, direction > vec3f(0.0)) - origin;
+    let along = select(direction, vec3f(1e-6), abs(direction) < vec3f(1e-6));
+    let distances = abs(ahead / along);
+    return min(min(distances.x, distances.y), distances.z);
 }
 
 // Where a ray in the liquid ends, if the view ray is `path` m long and ends at a body, at the bottom or at a wall. The ray
 // may meet a body that the view ray misses, and the other way round.
 fn end_in_liquid(world: vec3f, direction: vec3f, path: f32) -> Place {
     let slack = NEAR_END_IN_BOX * length(globals.box_max - globals.box_min);
-    let down = bottom_distance(world, direction);
-    let farthest = min(select(1e30, down, down > 0.0), wall_ahead(world, direction).x);
-    let end = select(path, farthest, farthest < 1e29);
+    let end = box_exit(world, direction);
     var travelled = path;
     for (var turn = 0; turn < CORRECTIONS; turn++) {
         let place = world + direction * travelled;
         // How far the place is behind the body that the picture shows there.
         let behind = relative_to_middle(place) - body_towards(place);
         if abs(behind) < slack {
-            return Place(place, true);
+            return Place(place, travelled, true);
         }
         travelled -= behind;
         if travelled < 0.0 || travelled > end {
@@ -163,12 +170,13 @@ fn end_in_liquid(world: vec3f, direction: vec3f, path: f32) -> Place {
         }
     }
     let place = world + direction * end;
-    return Place(place, relative_to_middle(place) - body_towards(place) < slack);
+    return Place(place, end, relative_to_middle(place) - body_towards(place) < slack);
 }
 
-// The light that a ray brings from where it leaves the liquid: that of the picture behind the liquid, where the place that it
-// meets is known, and otherwise that of the environment.
-fn light_behind(pixel: vec2f, world: vec3f, normal: vec3f, leaving: Leaving) -> vec3f {
+// The light that a ray brings from where it leaves the liquid, and its length in the liquid in m. The light is that of the
+// picture behind the liquid, where the place that the ray meets is known, and otherwise that of the environment.
+fn light_behind(pixel: vec2f, world: vec3f, normal: vec3f, leaving: Leaving) -> vec4f {
+    var path = leaving.path;
     var place = leaving.origin;
     var direction = leaving.direction;
     var is_known = leaving.end == IN_PICTURE;
@@ -177,6 +185,10 @@ fn light_behind(pixel: vec2f, world: vec3f, normal: vec3f, leaving: Leaving) -> 
         // The floor is known without the picture too.
         place = select(world, end.world, end.is_shown);
         is_known = end.is_shown;
+        path = end.travelled;
+    } else if is_known && body_towards(place) < relative_to_middle(world) {
+        // A body in front of the surface hides the place.
+        place = world;
     }
     if leaving.end == AT_SURFACE {
         let outward = exit_normal(pixel, world, normal, direction, leaving.path);
@@ -188,17 +200,19 @@ fn light_behind(pixel: vec2f, world: vec3f, normal: vec3f, leaving: Leaving) -> 
         let on_floor = place + direction * to_floor;
         // A body that hides the place on the floor from the eye probably hides it from the ray as well.
         let hiding = body_towards(on_floor);
-        let is_hidden =
-            to_floor > 0.0 && hiding < relative_to_middle(on_floor) && hiding > relative_to_middle(place);
+        let is_hidden = to_floor > 0.0
+            && hiding < min(relative_to_middle(on_floor), NO_BODY)
+            && hiding > relative_to_middle(place);
         is_known = ahead > 0.0 || is_hidden;
         place += direction * select(select(0.0, to_floor, is_hidden), ahead, ahead > 0.0);
     }
     // At the end, once each: a software driver evaluates both.
     let seen = scene_at(place);
     if is_known {
-        return seen.rgb;
+        return vec4f(seen.rgb, path);
     }
-    return mix(BUBBLES * globals.foam_light, environment(place, direction, 6.0 * globals.pixel_angle), seen.a);
+    let outside = environment(place, direction, 6.0 * globals.pixel_angle);
+    return vec4f(mix(BUBBLES * globals.foam_light, outside, seen.a), path);
 }
 
 // Colour of the liquid in a pixel at the surface point `world`. The normal may have any length.
@@ -215,8 +229,8 @@ fn liquid_colour(pixel: vec2f, world: vec3f, outward: vec3f) -> vec3f {
     let behind = light_behind(pixel, world, normal, leaving);
 
     // Absorption along the path (Beer-Lambert), and light scattered back by a turbid liquid.
-    let transmittance = exp(-globals.liquid_absorption * leaving.path);
-    let transmitted = mix(behind * transmittance, scattered_light(normal), turbidity(leaving.path));
+    let transmittance = exp(-globals.liquid_absorption * behind.w);
+    let transmitted = mix(behind.rgb * transmittance, scattered_light(normal), turbidity(behind.w));
     let sun = sun_highlight(normal, to_eye, facing);
     return present(mix(transmitted, reflection, mirrored) + globals.sun_light * min(2.2 * sun, 12.0));
 }

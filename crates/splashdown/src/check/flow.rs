@@ -42,7 +42,7 @@ fn check_emitter(
     if points.iter().any(|x| x.cmplt(domain.min - slack).any() || x.cmpgt(domain.max + slack).any()) {
         return Err(outlet_outside(section, emitter, domain));
     }
-    obstacles::warn_of_walls(scene, emitter, section);
+    obstacles::warn_of_walls(scene, emitter, &points, section);
     for placed in bodies {
         let inside = points.iter().filter(|x| placed.contains(**x)).count();
         if 2 * inside <= points.len() {

@@ -1,20 +1,33 @@
 //! The meshes of bodies at their poses at the start.
 
+use std::cell::OnceCell;
+
 use glam::Vec3;
 use splashdown_io::Mesh;
 
 use crate::scene::{Body, Motion};
-use crate::solid;
+use crate::solid::{self, Bvh};
 
 /// A point is inside a mesh if the absolute winding number exceeds this value; on the surface it is 0.5.
-const INSIDE: f64 = 0.75;
+const INSIDE: f32 = 0.75;
+/// Points of a triangle: its middle, and this part of the way from there to its corners.
+const TO_CORNERS: f32 = 0.9;
 
 /// A body's mesh at its pose at t = 0.
 pub(super) struct Placed<'a> {
     pub body: &'a Body,
-    triangles: Vec<[Vec3; 3]>,
     pub low: Vec3,
     pub high: Vec3,
+    mesh: Mesh,
+    /// The volume of a solid; `None` for a shell, which encloses none. Repaired when it is first needed.
+    volume: OnceCell<Option<Volume>>,
+}
+
+/// The inside of a solid.
+struct Volume {
+    /// Oriented outwards.
+    triangles: Vec<[Vec3; 3]>,
+    tree: Bvh,
 }
 
 impl<'a> Placed<'a> {
@@ -26,36 +39,39 @@ impl<'a> Placed<'a> {
             }
             _ => (body.mesh.position, body.mesh.rotation),
         };
-        let vertices: Vec<Vec3> =
-            mesh.vertices.iter().map(|v| position + rotation * Vec3::from(*v)).collect();
-        let corner = |v: u32| vertices.get(v as usize).copied().unwrap_or(Vec3::ZERO);
-        let (low, high) = vertices
-            .iter()
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-        Self { body, triangles: mesh.triangles.iter().map(|t| t.map(corner)).collect(), low, high }
+        let vertices: Vec<[f32; 3]> =
+            mesh.vertices.iter().map(|v| (position + rotation * Vec3::from(*v)).to_array()).collect();
+        let mesh = Mesh::new(vertices, mesh.triangles.clone());
+        let (low, high) = solid::bounds(&mesh);
+        Self { body, low, high, mesh, volume: OnceCell::new() }
     }
 
-    /// The number of triangles.
-    pub fn triangle_count(&self) -> usize {
-        self.triangles.len()
-    }
-
-    /// At most `most` corners and middles of triangles, moved towards the middle of the body by `inwards` m.
-    pub fn points(&self, inwards: f32, most: usize) -> impl Iterator<Item = Vec3> {
-        let middle = 0.5 * (self.low + self.high);
-        let every = (4 * self.triangles.len()).div_ceil(most.max(1)).max(1);
-        let points = self.triangles.iter().flat_map(|[a, b, c]| [*a, *b, *c, (*a + *b + *c) / 3.0]);
-        points.step_by(every).map(move |point| {
-            let way = middle - point;
-            point + way.clamp_length_max(inwards)
-        })
-    }
-
-    /// Whether a point lies inside the mesh, for either orientation of its triangles.
+    /// Whether a point lies in the body. No point lies in a shell.
     pub fn contains(&self, x: Vec3) -> bool {
-        if x.cmplt(self.low).any() || x.cmpgt(self.high).any() {
-            return false;
-        }
-        solid::winding(&self.triangles, x).abs() > INSIDE
+        let is_near = x.cmpge(self.low).all() && x.cmple(self.high).all();
+        is_near && self.volume().is_some_and(|volume| volume.tree.winding(x).abs() > INSIDE)
+    }
+
+    /// Points of the body in this box, `depth` m below its surface; none of a shell.
+    pub fn points_in(&self, low: Vec3, high: Vec3, depth: f32) -> Vec<Vec3> {
+        let triangles = self.volume().map_or(&[][..], |volume| &volume.triangles);
+        let of_triangle = |&[a, b, c]: &[Vec3; 3]| {
+            let middle = (a + b + c) / 3.0;
+            let inwards = -depth * (b - a).cross(c - a).normalize_or_zero();
+            [a, b, c, middle].map(|corner| middle.lerp(corner, TO_CORNERS) + inwards)
+        };
+        let is_in = |x: &Vec3| x.cmpge(low).all() && x.cmple(high).all();
+        triangles.iter().flat_map(of_triangle).filter(is_in).collect()
+    }
+
+    fn volume(&self) -> Option<&Volume> {
+        let build = || {
+            let (mesh, report) = solid::repair(&self.mesh, self.body.shell);
+            let corner = |v: u32| Vec3::from(mesh.vertices[v as usize]);
+            let triangles: Vec<_> = mesh.triangles.iter().map(|t| t.map(corner)).collect();
+            let is_solid = !report.shell && !triangles.is_empty();
+            is_solid.then(|| Volume { tree: Bvh::new(triangles.clone()), triangles })
+        };
+        self.volume.get_or_init(build).as_ref()
     }
 }

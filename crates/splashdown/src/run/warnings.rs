@@ -70,8 +70,8 @@ impl Run {
         let length = Built::of(scene).flow(scene).map_or(0.0, |flow| flow.longest_nozzle());
         let text = format!(
             "the emitters have added {} particles, {:.0} % of the {planned} of their flow: there was no room in a nozzle, \
-             which begins {length:.3} m behind its outlet, or in front of it. Move nozzles out of the water with all of \
-             this length, or make room in front of them",
+             which begins up to {length:.3} m behind its outlet, or in front of it. Move nozzles out of the water with \
+             all of this length, or make room in front of them",
             stats.emitted,
             100.0 * share
         );

@@ -23,7 +23,7 @@ struct Node {
 }
 
 /// The hierarchy of nodes and the triangles in its order.
-pub(super) struct Bvh {
+pub(crate) struct Bvh {
     nodes: Vec<Node>,
     triangles: Vec<[Vec3; 3]>,
 }

@@ -23,6 +23,7 @@ pub(crate) mod spline;
 mod surroundings;
 mod widths;
 
+pub(crate) use bvh::Bvh;
 pub use bvh::ray_distance;
 pub use cache::default_cache_folder;
 pub use field::DistanceField;
