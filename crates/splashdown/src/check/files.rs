@@ -34,7 +34,10 @@ pub(super) fn check(scene: &Scene, root: &Section<'_>) -> Result<(), Reported> {
     let fluid = check_fluid(scene, &root.section("fluid")?);
     bodies.and(emitters).and(sinks)?;
     flow::warn_of_conflicts(scene, &loaded, &root.sections_if_any("emitter")?);
-    Built::of(scene).store(meshes, loaded, fluid?);
+    let fluid = fluid?;
+    let particles = fluid.as_ref().map(|(particles, _)| particles);
+    flow::warn_of_drained_fluid(scene, &loaded, particles, &root.sections_if_any("sink")?);
+    Built::of(scene).store(meshes, loaded, fluid);
     Ok(())
 }
 

@@ -1,14 +1,18 @@
 //! Checks the emitters and sinks of a scene together with the bodies and with one another.
 
 use glam::Vec3;
+use splashdown_io::Particles;
 
 use super::obstacles;
 use super::placed::Placed;
 use crate::flow::{LoadedFlow, outlet};
+use crate::scene::lattice::Sampler;
 use crate::scene::{Emitter, Motion, Reported, Scene, Section, outlet_outside};
 
 /// Maximum number of points of an outlet that are tested against bodies.
 const MAX_POINTS: usize = 64;
+/// Maximum number of places of particles that are tested against sinks.
+const MOST_SITES: u64 = 5_000_000;
 
 pub(super) fn check_emitters(
     scene: &Scene,
@@ -73,6 +77,36 @@ pub(super) fn check_sinks(
         }
     }
     result
+}
+
+/// Warns of sinks that remove all fluid of the start. `particles` are those of fluid that is not only blocks.
+pub(super) fn warn_of_drained_fluid(
+    scene: &Scene,
+    flow: &LoadedFlow,
+    particles: Option<&Particles>,
+    sections: &[Section<'_>],
+) {
+    let Some(section) = sections.first() else { return };
+    let is_drained = match particles {
+        Some(particles) => particles.positions.iter().all(|x| flow.removes(Vec3::from(*x))),
+        None => {
+            let samplers = Sampler::all(&scene.domain, &scene.fluid);
+            let sites: u64 =
+                samplers.iter().map(|sampler| sampler.layers().into_iter().product::<u64>()).sum();
+            let mut is_drained = (1..=MOST_SITES).contains(&sites);
+            if is_drained {
+                let mut test = |x: [f64; 3], free: bool| {
+                    is_drained &= !free || flow.removes(Vec3::from(x.map(|x| x as f32)));
+                };
+                samplers.iter().for_each(|sampler| sampler.for_each(&mut test));
+            }
+            is_drained
+        }
+    };
+    if is_drained {
+        let message = "the sinks contain all fluid, which is removed in the first step".to_owned();
+        section.warn("min", message, "make the sink smaller, or move it");
+    }
 }
 
 /// Warns of emitters whose fluid a sink removes before it leaves the outlet, and of outlets that cross.

@@ -37,6 +37,11 @@ impl LoadedFlow {
         pairs.collect()
     }
 
+    /// Whether a sink removes particles at this place.
+    pub(crate) fn removes(&self, x: Vec3) -> bool {
+        self.drains.iter().any(|drain| drain.takes(&self.maps, x))
+    }
+
     /// The length of an emitter's nozzle in m.
     pub(crate) fn nozzle_length(&self, emitter: usize) -> f32 {
         self.nozzles[emitter].length

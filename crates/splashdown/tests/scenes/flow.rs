@@ -193,6 +193,16 @@ fn outlets_that_cross_are_reported() {
 }
 
 #[test]
+fn sinks_that_contain_all_fluid_are_reported() {
+    let reported = |max: f32| {
+        let sink = format!("[[sink]]\nname = \"drain\"\nmin = [0, 0, 0]\nmax = [1, {max}, 1]");
+        warnings(&sink).iter().any(|text| text.contains("contain all fluid"))
+    };
+    assert!(reported(1.0));
+    assert!(!reported(0.04), "control: a part of it");
+}
+
+#[test]
 fn an_outlet_in_front_of_a_wall_is_reported() {
     let reported = |y: f32, direction: &str| {
         let text = TAP
