@@ -41,7 +41,10 @@ impl<'a> Placed<'a> {
         };
         let vertices: Vec<[f32; 3]> =
             mesh.vertices.iter().map(|v| (position + rotation * Vec3::from(*v)).to_array()).collect();
-        let mesh = Mesh::new(vertices, mesh.triangles.clone());
+        // A mesh with missing vertices is refused when it is built.
+        let is_whole = |t: &&[u32; 3]| t.iter().all(|&v| (v as usize) < vertices.len());
+        let triangles = mesh.triangles.iter().filter(is_whole).copied().collect();
+        let mesh = Mesh::new(vertices, triangles);
         let (low, high) = solid::bounds(&mesh);
         Self { body, low, high, mesh, volume: OnceCell::new() }
     }

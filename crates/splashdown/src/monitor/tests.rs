@@ -325,12 +325,12 @@ fn corrections_at_a_dynamic_body_advise_shorter_steps() {
         body("post", "")
     );
     let scene = Scene::parse(&text, "test.toml").unwrap_or_else(|errors| panic!("{errors}"));
-    let context = words::Context::new(&scene, 10.0, 1.0);
+    let context = Context::new(&scene, 10.0, 1.0);
     let message = |name| {
         let place = Some(Vec3::splat(0.8));
         let watched = Watched::WallCorrections;
         let (value, time, body) = (2.0, 1.0, Some((0.0, name)));
-        context.message(&words::Rise { watched, value, time, place, body, allowed_speed: 1.0 })
+        context.message(&Rise { watched, value, time, place, body, allowed_speed: 1.0 })
     };
     assert!(message("cork").contains("Lower solver.cfl_factor (now 0.7)"), "{}", message("cork"));
     // Control: nothing moves a static body.

@@ -38,7 +38,6 @@ use glam::{Quat, Vec3};
 use splashdown_io::Mesh;
 
 use crate::boundary::PlaneFraction;
-use bvh::Bvh;
 
 /// Parameters for building a solid.
 #[derive(Clone, Debug)]
@@ -278,13 +277,6 @@ fn check(mesh: &Mesh) -> Result<(), SolidError> {
         Some(triangle) => Err(SolidError::BadTriangle { triangle, vertices }),
         None => Ok(()),
     }
-}
-
-/// The generalised winding number of triangles about a point: 1 inside a mesh that faces outwards, 0 outside
-/// (Jacobson et al. 2013).
-pub(crate) fn winding(triangles: &[[Vec3; 3]], x: Vec3) -> f64 {
-    let angle: f64 = triangles.iter().map(|t| f64::from(bvh::solid_angle(x, t))).sum();
-    angle / (4.0 * std::f64::consts::PI)
 }
 
 /// Lower and upper corners of a mesh's bounding box, in m.
