@@ -6,10 +6,11 @@
 //! * *Reflection*: the reflected ray samples the same procedural environment as the background.
 //! * *Refraction*: the walls of the tank are known, so that a ray that meets one inside the liquid is
 //!   refracted there or reflected totally, up to three times. Where the view ray ends at a body or at the
-//!   bottom, the refracted one ends after the same length in a texture with the picture without the
-//!   liquid. Elsewhere it leaves through a free surface, whose normal follows from the thickness in
-//!   the pixels around, and is refracted again. Light is absorbed along the path (Beer-Lambert), and
-//!   the liquid's own colour increases with depth.
+//!   bottom, the refracted one is followed to the body that it meets, whose distance is known in every
+//!   pixel, or to the side of the box, and shows a texture with the picture without the liquid there.
+//!   Where that place is hidden, the floor is computed. Elsewhere the ray leaves through a free
+//!   surface, whose normal follows from the thickness in the pixels around, and is refracted again.
+//!   Light is absorbed along the path (Beer-Lambert), and the liquid's own colour increases with depth.
 //! * *Fresnel*: the exact equations for a dielectric and unpolarised light weight the two. A rough
 //!   highlight of the sun (GGX, Walter et al. 2007) is added.
 //!
