@@ -88,11 +88,14 @@ pub(super) fn warn_of_drained_fluid(
 ) {
     let Some(section) = sections.first() else { return };
     let is_drained = match particles {
-        Some(particles) => particles.positions.iter().all(|x| flow.removes(Vec3::from(*x))),
+        Some(particles) => {
+            let places = &particles.positions;
+            !places.is_empty() && places.iter().all(|x| flow.removes(Vec3::from(*x)))
+        }
         None => {
             let samplers = Sampler::all(&scene.domain, &scene.fluid);
-            let sites: u64 =
-                samplers.iter().map(|sampler| sampler.layers().into_iter().product::<u64>()).sum();
+            let sites_of = |sampler: &Sampler| sampler.layers().into_iter().fold(1, u64::saturating_mul);
+            let sites = samplers.iter().map(sites_of).fold(0, u64::saturating_add);
             let mut is_drained = (1..=MOST_SITES).contains(&sites);
             if is_drained {
                 let mut test = |x: [f64; 3], free: bool| {

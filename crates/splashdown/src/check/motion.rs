@@ -25,7 +25,7 @@ const OVERLAP: f32 = 0.05;
 /// A piston may compress the fluid by this fraction without a warning, which is within the error of counting particles.
 const COMPRESSION: f32 = 0.03;
 
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Warns of problems of a body whose mesh has these corners at the start, and this distance from its origin.
 ///

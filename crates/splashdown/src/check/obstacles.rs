@@ -3,6 +3,7 @@
 
 use glam::Vec3;
 
+use super::motion::AXES;
 use super::placed::Placed;
 use crate::scene::{Emitter, Motion, Quantity, Scene, Section};
 
@@ -14,8 +15,6 @@ const MOST_POINTS: usize = 400;
 const ROOM: f32 = 2.0;
 /// A smaller part of an outlet's direction towards a wall is along it.
 const ALONG_WALL: f32 = 0.2;
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Warns of dynamic bodies that overlap another body at the start. The contacts push them apart. A hinged body may contain
 /// its axle.
