@@ -24,7 +24,6 @@ pub(crate) const SUNLIT: &str = include_str!("trace/sunlit.wgsl");
 pub(crate) const REFRACTED: &str = include_str!("trace/refracted.wgsl");
 pub(crate) const LIQUID: &str = include_str!("shared/liquid.wgsl");
 pub(crate) const PICTURE_BEHIND: &str = include_str!("shared/picture_behind.wgsl");
-pub(crate) const BODIES_BEHIND: &str = include_str!("shared/bodies_behind.wgsl");
 pub(crate) const QUANTITY: &str = include_str!("shared/quantity.wgsl");
 pub(crate) const SPHERE: &str = include_str!("shared/sphere.wgsl");
 
@@ -134,8 +133,8 @@ mod tests {
         wgsl_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
         assert_eq!(
             files.len(),
-            ALL.len() + 19,
-            "each shader has its own file, and nineteen more are shared: {files:?}"
+            ALL.len() + 18,
+            "each shader has its own file, and eighteen more are shared: {files:?}"
         );
         for path in files {
             let text = std::fs::read_to_string(&path).unwrap();

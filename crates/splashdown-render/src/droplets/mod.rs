@@ -37,8 +37,7 @@ use crate::error::{check_radius, check_shutter};
 use crate::globals::Globals;
 use crate::pipeline::{Bind, Depth, OVER, PipelineDesc, bind_group_layout, linear_sampler};
 use crate::shader::{
-    BODIES_BEHIND, ENVIRONMENT, GLOBALS, MATTE, OPTICS, PICTURE_BEHIND, REFRACTED, SPHERE, SUN_LAYERS,
-    SUNLIT, Shader, TRACE,
+    ENVIRONMENT, GLOBALS, MATTE, OPTICS, PICTURE_BEHIND, REFRACTED, SPHERE, SUN_LAYERS, SUNLIT, Shader, TRACE,
 };
 use crate::targets::Targets;
 use crate::{DropletBuffers, Liquid, RenderError};
@@ -47,16 +46,7 @@ use wgpu::{BindGroupLayout, BindingResource, Device, RenderPass, RenderPipeline,
 const DROPLETS: &str = include_str!("droplets.wgsl");
 pub(crate) const SHADER: Shader = Shader {
     label: "droplets",
-    parts: &[
-        GLOBALS,
-        ENVIRONMENT,
-        OPTICS,
-        PICTURE_BEHIND,
-        BODIES_BEHIND,
-        SPHERE,
-        include_str!("plain.wgsl"),
-        DROPLETS,
-    ],
+    parts: &[GLOBALS, ENVIRONMENT, OPTICS, PICTURE_BEHIND, SPHERE, include_str!("plain.wgsl"), DROPLETS],
 };
 pub(crate) const TRACED: Shader = Shader {
     label: "traced droplets",

@@ -1,4 +1,4 @@
-// Droplets without traced rays. Needs environment.wgsl, picture_behind.wgsl, bodies_behind.wgsl.
+// Droplets without traced rays. Needs environment.wgsl, picture_behind.wgsl.
 
 @group(2) @binding(0) var<storage, read> droplets: array<vec4u>;
 @group(2) @binding(1) var scene_colour: texture_2d_array<f32>; // the picture without the liquid, a layer per tile

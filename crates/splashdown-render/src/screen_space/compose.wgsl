@@ -1,5 +1,5 @@
 // Shades the smoothed distances and blends them over the picture. Needs globals.wgsl,
-// environment.wgsl, bodies_behind.wgsl, liquid.wgsl, fullscreen.wgsl.
+// environment.wgsl, liquid.wgsl, fullscreen.wgsl.
 
 @group(2) @binding(4) var distances: texture_2d<f32>;      // distance along the view direction, liquid fraction
 

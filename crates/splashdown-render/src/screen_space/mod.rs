@@ -49,9 +49,7 @@ use crate::pipeline::{
     ADD, Bind, DEPTH, Depth, OVER, PipelineDesc, bind_group, bind_group_layout, linear_sampler,
 };
 use crate::recorder::Recorder;
-use crate::shader::{
-    BODIES_BEHIND, ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, PICTURE_BEHIND, SPHERE, Shader,
-};
+use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, PICTURE_BEHIND, SPHERE, Shader};
 use crate::targets::{THICKNESS_FORMAT, Targets, texture};
 use crate::{Liquid, ParticleBuffers, RenderError};
 use wgpu::{
@@ -72,16 +70,7 @@ pub(crate) const CLEANUP: Shader =
     Shader { label: "cleanup", parts: &[GLOBALS, FULLSCREEN, NARROW_RANGE, include_str!("cleanup.wgsl")] };
 pub(crate) const COMPOSE: Shader = Shader {
     label: "compose",
-    parts: &[
-        GLOBALS,
-        FULLSCREEN,
-        ENVIRONMENT,
-        OPTICS,
-        PICTURE_BEHIND,
-        BODIES_BEHIND,
-        LIQUID,
-        include_str!("compose.wgsl"),
-    ],
+    parts: &[GLOBALS, FULLSCREEN, ENVIRONMENT, OPTICS, PICTURE_BEHIND, LIQUID, include_str!("compose.wgsl")],
 };
 
 /// Distances need full precision: a normal is a difference of neighbouring distances.

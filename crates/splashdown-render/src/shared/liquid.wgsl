@@ -1,6 +1,5 @@
 // Shading of the liquid's surface without tracing rays: Fresnel blend of reflection and refraction,
-// used for the mesh and the screen-space fluid. Needs globals.wgsl, environment.wgsl, optics.wgsl, picture_behind.wgsl,
-// bodies_behind.wgsl.
+// used for the mesh and the screen-space fluid. Needs globals.wgsl, environment.wgsl, optics.wgsl, picture_behind.wgsl.
 
 @group(2) @binding(0) var scene_colour: texture_2d_array<f32>; // the picture without the liquid, a layer per tile
 @group(2) @binding(1) var thickness: texture_2d<f32>;      // length of the view ray inside the liquid, m

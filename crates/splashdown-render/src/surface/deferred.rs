@@ -38,9 +38,7 @@
 use crate::SurfaceBuffers;
 use crate::pipeline::{Bind, Depth, PipelineDesc, bind_group, bind_group_layout, linear_sampler};
 use crate::recorder::Recorder;
-use crate::shader::{
-    BODIES_BEHIND, ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, PICTURE_BEHIND, Shader,
-};
+use crate::shader::{ENVIRONMENT, FULLSCREEN, GLOBALS, LIQUID, OPTICS, PICTURE_BEHIND, Shader};
 use crate::targets::{NORMAL_FORMAT, Targets};
 use wgpu::{
     BindGroup, BindGroupLayout, BindingResource, Device, Face, RenderPipeline, Sampler, TextureFormat,
@@ -68,7 +66,6 @@ pub(crate) const SHADE_ONE: Shader = Shader {
         ENVIRONMENT,
         OPTICS,
         PICTURE_BEHIND,
-        BODIES_BEHIND,
         LIQUID,
         NORMAL_CODE,
         ONE_SAMPLE,
@@ -84,7 +81,6 @@ pub(crate) const SHADE_FOUR: Shader = Shader {
         ENVIRONMENT,
         OPTICS,
         PICTURE_BEHIND,
-        BODIES_BEHIND,
         LIQUID,
         NORMAL_CODE,
         FOUR_SAMPLES,

@@ -1,5 +1,5 @@
 // Shades the stored surface once per pixel. Needs globals.wgsl, fullscreen.wgsl, environment.wgsl,
-// optics.wgsl, bodies_behind.wgsl, liquid.wgsl, stored.wgsl.
+// optics.wgsl, liquid.wgsl, stored.wgsl.
 
 // Samples of a pixel are shaded together if the cosine between their normals is above this value, an
 // angle of one degree, and if their depths differ by less than this ratio. A surface at a grazing
