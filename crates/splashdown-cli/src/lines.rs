@@ -75,7 +75,10 @@ pub struct Line {
     /// Steps whose viscosity did not converge, since the start.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub viscous_unconverged: Option<u32>,
-    /// The relative deficit of density.
+    /// The relative excess of density that one particle in a hundred has, or the largest of the whole run at its end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub density_excess: Option<f32>,
+    /// The relative deficit of density that one inner particle in a hundred has, or the largest of the whole run at its end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub density_deficit: Option<f32>,
     /// Total number of particles that left through an open side.
@@ -157,7 +160,9 @@ impl Line {
             event: "finished",
             frame: Some(summary.frames),
             frames: Some(summary.frames),
-            density_error: Some(summary.density_error),
+            density_error: Some(summary.density_error()),
+            density_excess: Some(summary.density_excess),
+            density_deficit: Some(summary.density_deficit),
             volume: summary.volume.map(|[_, last]| last),
             triangles,
             files: Some(files),
@@ -202,6 +207,7 @@ impl Line {
             dt: Some(stats.dt),
             particles: Some(stats.particles),
             density_error: Some(stats.density_error),
+            density_excess: Some(stats.density_excess),
             density_deficit: Some(stats.density_deficit),
             max_speed: Some(stats.max_speed),
             escaped: Some(stats.escaped),

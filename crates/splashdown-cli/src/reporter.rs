@@ -1,5 +1,7 @@
 //! The console output of a run: text and a progress bar for people, JSON lines for programs.
 
+use std::collections::BTreeSet;
+use std::path::Path;
 use std::time::Duration;
 
 use splashdown::run::{Progress, ProgressFn, Started};
@@ -34,8 +36,11 @@ impl ConsoleReporter {
         self.bar.clear();
         let results = partial_results(&outcome);
         let RunOutcome { end, folder, last_frame, files, films, picture_timings, .. } = outcome;
-        let closing = films.iter().map(|film| film.path.clone()).chain([folder.report()]);
-        let closing: Vec<String> = closing.map(|path| path.display().to_string()).collect();
+        // The files that belong to no single frame.
+        let whole = files.iter().map(|file| &file.path).filter(|path| !is_numbered(path));
+        let whole = whole.chain(films.iter().map(|film| &film.path)).cloned().chain([folder.report()]);
+        let whole: BTreeSet<_> = whole.collect();
+        let closing: Vec<String> = whole.iter().map(|path| path.display().to_string()).collect();
         match end {
             RunEnd::Finished(numbers) => {
                 let triangles = last_frame.as_ref().and_then(|frame| frame.summary.triangles);
@@ -82,6 +87,16 @@ impl ConsoleReporter {
             self.bar.suspend(|| console::print_json(line));
         }
     }
+}
+
+/// Whether a file is one of a series: `surface_0012.ply`, but not `scene_0006.usdc` of a run that begins there.
+fn is_numbered(path: &Path) -> bool {
+    if path.extension().is_some_and(|ending| ending == "usdc") {
+        return false;
+    }
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    stem.rsplit_once('_')
+        .is_some_and(|(_, number)| number.len() >= 4 && number.bytes().all(|digit| digit.is_ascii_digit()))
 }
 
 impl Reporter for ConsoleReporter {

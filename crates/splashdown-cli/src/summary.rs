@@ -40,7 +40,11 @@ pub fn numbers(summary: &Summary) -> String {
         ),
         (
             "density error",
-            format!("{} % at most", human::three_digits(100.0 * f64::from(summary.density_error))),
+            format!(
+                "at most {} % too dense, {} % too thin",
+                human::three_digits(100.0 * f64::from(summary.density_excess)),
+                human::three_digits(100.0 * f64::from(summary.density_deficit))
+            ),
         ),
         ("volume", volume(summary)),
         ("particles", particles),

@@ -88,7 +88,7 @@ pub fn run<'py>(
         RunEnd::Finished(summary) => {
             result.set_item("steps", summary.steps)?;
             result.set_item("wall", summary.wall)?;
-            result.set_item("density_error", summary.density_error)?;
+            result.set_item("density_error", summary.density_error())?;
         }
         _ => {}
     }

@@ -115,6 +115,11 @@ stats! {
     /// >>> bool(0 <= simulation.advance(0.01).density_error < 0.1)
     /// True
     density_error: f32,
+    /// The relative excess of density that one particle in a hundred has, in the frames of a `Run`.
+    ///
+    /// >>> bool(0 <= frame.stats.density_excess < 0.1)
+    /// True
+    density_excess: f32,
     /// The relative deficit of density that one inner particle in a hundred has, in the frames of a `Run`.
     ///
     /// >>> bool(0 <= frame.stats.density_deficit < 0.2)

@@ -88,6 +88,7 @@ pub(crate) struct End {
     wall_corrections: u32,
     max_speed: f32,
     density_error: f32,
+    density_excess: f32,
     density_deficit: f32,
 }
 
@@ -102,6 +103,8 @@ pub(crate) struct Numbers {
     particle_steps_per_second: f64,
     simulated_per_wall: f64,
     density_error: f32,
+    density_excess: f32,
+    density_deficit: f32,
     surface_volume: Option<[f64; 2]>,
     particle_volume: [f64; 2],
     /// Of an implicit pressure.
@@ -165,6 +168,7 @@ impl Report {
             wall_corrections: stats.wall_corrections,
             max_speed: stats.max_speed,
             density_error: stats.density_error,
+            density_excess: stats.density_excess,
             density_deficit: stats.density_deficit,
         });
     }
@@ -181,7 +185,9 @@ impl Report {
             monitor_wall: summary.monitor_wall,
             particle_steps_per_second: summary.particle_steps_per_second,
             simulated_per_wall: summary.simulated_per_wall,
-            density_error: summary.density_error,
+            density_error: summary.density_error(),
+            density_excess: summary.density_excess,
+            density_deficit: summary.density_deficit,
             surface_volume: summary.volume,
             particle_volume: summary.particle_volume,
             pressure: summary.tolerance.map(|tolerance| PressureNumbers {

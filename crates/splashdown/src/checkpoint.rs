@@ -22,7 +22,7 @@ use crate::foam::{Diffuse, FoamState, KeptFoam};
 use crate::scene::{Scene, SceneErrors};
 
 /// The version of the format.
-const VERSION: u32 = 9;
+const VERSION: u32 = 10;
 /// Words per diffuse particle.
 const FOAM_COLUMNS: usize = size_of::<Diffuse>() / 4;
 

@@ -42,6 +42,10 @@ pub struct Stats {
     /// frames of a [`Run`](crate::Run) the larger one of excess and deficit by the positions of the particles, walls and
     /// bodies included: see [`DensityError`](crate::monitor::DensityError).
     pub density_error: f32,
+    /// The relative excess of density that one particle in a hundred has, by the positions of the particles. Only in the frames
+    /// of a [`Run`](crate::Run); otherwise 0.
+    #[serde(default)]
+    pub density_excess: f32,
     /// The relative deficit of density that one inner particle in a hundred has, by the positions of the particles. Only in
     /// the frames of a [`Run`](crate::Run); otherwise 0.
     pub density_deficit: f32,

@@ -177,8 +177,8 @@ fn invalid_checkpoints_are_rejected_with_a_reason() -> Outcome {
 
     // Checkpoints of another version or another scene.
     let mut other = splashdown_io::Archive::from_bytes(&bytes)?;
-    other.set_text("about.json", &other.text("about.json")?.replace("\"version\": 9", "\"version\": 10"));
-    assert!(refused(&other.to_bytes()?).contains("format 10"));
+    other.set_text("about.json", &other.text("about.json")?.replace("\"version\": 10", "\"version\": 11"));
+    assert!(refused(&other.to_bytes()?).contains("format 11"));
     let mut other = splashdown_io::Archive::from_bytes(&bytes)?;
     other.set_text(
         "scene.toml",

@@ -74,6 +74,10 @@ pub fn run(arguments: &CheckArguments) -> Result<(), Failure> {
 
 fn execute(arguments: &CheckArguments) -> Result<(), Failure> {
     let scene = scene_file::load(&arguments.scene)?;
+    if !arguments.json {
+        // They may say why the scene cannot be prepared.
+        scene.warnings.iter().for_each(|warning| console::note(format!("{warning}\n")));
+    }
     let bar = Bar::new(Verbosity::Normal, arguments.json);
     let prepared = prepare(&scene, &bar.preparation());
     bar.clear();
@@ -109,9 +113,6 @@ fn execute(arguments: &CheckArguments) -> Result<(), Failure> {
             warnings: &scene.warnings,
         });
         return Ok(fits?);
-    }
-    for warning in &scene.warnings {
-        console::note(format!("{warning}\n"));
     }
     let file = arguments.scene.display();
     console::print(format!(
@@ -253,8 +254,6 @@ fn print_packing(packing: &Packing) {
     ));
     if packing.after.is_some() {
         console::print(format!("  initial packing: {packing}"));
-    } else if packing.is_overfull() {
-        console::note(format!("warning: {}\n", packing.overfull()));
     } else if !packing.is_sound() {
         console::print(
             "  initial packing: the run relaxes so many particles before its first step; not tried here",
@@ -320,7 +319,7 @@ fn particles(inventory: &Inventory, spacing: f32) -> String {
     if inventory.removed > 0 {
         let all = (inventory.particles + inventory.removed) as f64;
         words += &format!(
-            "; {} inside bodies or within half a spacing of them are removed, {:.1} % of the fluid",
+            "; {} inside bodies or in narrow gaps are removed, {:.1} % of the fluid",
             human::count(inventory.removed),
             100.0 * inventory.removed as f64 / all
         );

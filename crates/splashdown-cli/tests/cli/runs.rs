@@ -198,7 +198,7 @@ fn isolated_particles_leave_the_surface_and_are_written_as_droplets() -> Outcome
 #[test]
 fn every_json_line_has_every_key() -> Outcome {
     let place = Place::new()?;
-    let output = place.run_small(&["--json", "--formats", "ply"]).output()?;
+    let output = place.run_small(&["--json", "--formats", "ply,usd"]).output()?;
     assert!(output.status.success(), "{}", stderr(&output));
     let lines = lines(&output)?;
     for line in &lines {
@@ -210,6 +210,8 @@ fn every_json_line_has_every_key() -> Outcome {
     assert_eq!((of("started").len(), of("frame").len(), of("finished").len()), (1, 3, 1));
     assert_eq!(lines.first().map(|line| &line["event"]), Some(&Value::from("started")));
     assert_eq!(lines.last().map(|line| &line["event"]), Some(&Value::from("finished")));
+    let last = lines.last().map(|line| line["files"].to_string()).unwrap_or_default();
+    assert!(last.contains("run.json") && last.contains("scene.usdc") && !last.contains("_0002"), "{last}");
     for (index, frame) in of("frame").into_iter().enumerate() {
         assert_eq!(frame["frame"], index);
         assert_eq!(frame["particles"], 216);

@@ -145,7 +145,7 @@ fn check_counts_emitted_and_removed_particles() -> Outcome {
     assert!(removed.is_some_and(|removed| removed >= 64), "{report}");
     assert_eq!(left.zip(removed).map(|(left, removed)| left + removed), Some(216), "{report}");
     let words = place.splashdown(&["check", "post.toml", "--device", "cpu"]).output()?;
-    assert!(stdout(&words).contains("of them are removed, "), "{}", stdout(&words));
+    assert!(stdout(&words).contains("in narrow gaps are removed, "), "{}", stdout(&words));
     Ok(())
 }
 

@@ -74,6 +74,13 @@ fn solid_gradient_of(contact: Contact) -> vec3<f32> {
     return -2.0 * contact.slope;
 }
 
+struct Support {
+    normal: vec3<f32>,
+    least: f32,
+    arm: vec3<f32>,
+    impulse: f32,
+}
+
 struct ScriptSample {
     position: vec3<f32>,
     unused: f32,

@@ -29,7 +29,7 @@ impl Coupling for Bodies {
     }
 
     fn buffers(&self) -> BufferSet {
-        buffer_set!(self => bodies, maps, contacts, sums, scripts, pressure_sums, responses, unknowns)
+        buffer_set!(self => bodies, maps, contacts, sums, scripts, pressure_sums, responses, supports, unknowns)
     }
 
     fn record(&self, stage: Stage, step: &mut StepRecorder<'_>) {

@@ -30,6 +30,7 @@ mod scripted;
 mod solid_gradient;
 mod solid_velocity;
 mod stable_step;
+mod support;
 mod types;
 mod viscous;
 
@@ -53,6 +54,8 @@ use crate::solid::{DistanceField, RepairReport};
 use crate::state::Params;
 use rigid::Rigid;
 use scripted::ScriptedMotion;
+use support::SUPPORTS;
+use types::Support;
 
 /// Numbers per body in a checkpoint: five vectors, a quaternion and the work.
 const MOTION_COLUMNS: usize = 20;
@@ -186,6 +189,8 @@ pub struct Bodies {
     pub pressure_sums: Buffer<u32>,
     /// The velocity and the angular velocity of each body by the present implicit pressure, two vectors per body.
     pub responses: Buffer<Vec4>,
+    /// The contacts that support the bodies, [`SUPPORTS`] per body.
+    pub supports: Buffer<Support>,
     /// The unknowns of the implicit viscosity, ten vectors per body.
     pub unknowns: Buffer<Vec4>,
     /// True if forces move a body.
@@ -200,6 +205,8 @@ pub struct Bodies {
     /// The distance fields, for counting particles inside bodies on the host.
     fields: Vec<DistanceField>,
     rigid: Option<Rigid>,
+    /// Whether the device has contacts that support bodies.
+    are_supported: bool,
 }
 
 impl Bodies {
@@ -238,6 +245,7 @@ impl Bodies {
             sums: executor.create_from("sums", &vec![0; SUM_WORDS * states.len()])?,
             pressure_sums: executor.create_from("pressure_sums", &vec![0; SUM_WORDS * states.len()])?,
             responses: executor.create("responses", 2 * states.len())?,
+            supports: executor.create("supports", SUPPORTS * states.len())?,
             unknowns: executor.create("unknowns", viscous::VECTORS * states.len())?,
             has_dynamic: states.iter().any(|state| state.kind == Body::DYNAMIC),
             mobility,
@@ -254,6 +262,7 @@ impl Bodies {
             reports: loaded.iter().map(|body| body.solid.report).collect(),
             fields: loaded.into_iter().map(|body| body.solid.field).collect(),
             rigid,
+            are_supported: false,
         })
     }
 
@@ -305,7 +314,16 @@ impl Bodies {
     ) -> Result<Option<Vec<Body>>, GpuError> {
         let Some(rigid) = &mut self.rigid else { return Ok(None) };
         let mut states = executor.fetch(self.bodies).await?;
-        if !rigid.resolve(&mut states, seconds) {
+        let collided = rigid.resolve(&mut states, seconds);
+        let supports = rigid.supports(&states);
+        // Most bodies have none, most of the time.
+        if self.are_supported || !supports.is_empty() {
+            self.are_supported = !supports.is_empty();
+            let none = bytemuck::Zeroable::zeroed();
+            let all = if supports.is_empty() { vec![none; SUPPORTS * states.len()] } else { supports };
+            executor.write(self.supports, &all)?;
+        }
+        if !collided {
             return Ok(None);
         }
         executor.write(self.bodies, &states)?;
@@ -389,6 +407,13 @@ impl Bodies {
             body.work = row[19];
         }
         self.rigid = collisions;
+        if let Some(rigid) = &self.rigid {
+            let supports = rigid.supports(&bodies);
+            self.are_supported = !supports.is_empty();
+            if self.are_supported {
+                executor.write(self.supports, &supports)?;
+            }
+        }
         executor.write(self.bodies, &bodies)
     }
 

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::load::LoadedBody;
-use super::types::Body;
+use super::types::{Body, Support};
 use crate::scene::Domain;
 
 /// Collisions, which this build does not support.
@@ -19,6 +19,11 @@ impl Rigid {
 
     /// Never called: there is no value.
     pub fn resolve(&mut self, _: &mut [Body], _: f32) -> bool {
+        match *self {}
+    }
+
+    /// Never called: there is no value.
+    pub fn supports(&self, _: &[Body]) -> Vec<Support> {
         match *self {}
     }
 

@@ -24,7 +24,8 @@ use rapier3d::prelude::{
 use serde::{Deserialize, Serialize};
 
 use super::load::LoadedBody;
-use super::types::Body;
+use super::support::spread;
+use super::types::{Body, Support};
 use crate::scene::Domain;
 
 /// The coefficient of friction of the domain's sides. It is larger than that of any body, so that the smaller one is that
@@ -122,6 +123,48 @@ impl Rigid {
     /// Sets the positions from which the next batch starts, after bodies were moved by other means.
     pub fn place(&mut self, states: &[Body]) {
         self.before = states.iter().map(place).collect();
+    }
+
+    /// The contacts that carried a load in the last batch, [`SUPPORTS`](super::support::SUPPORTS) per body; empty if there is none.
+    pub fn supports(&self, states: &[Body]) -> Vec<Support> {
+        let of_body = |(state, &handle): (&Body, &RigidBodyHandle)| {
+            if state.kind == Body::DYNAMIC { self.loaded_contacts(handle) } else { Vec::new() }
+        };
+        let contacts: Vec<Vec<Support>> = states.iter().zip(&self.handles).map(of_body).collect();
+        if contacts.iter().all(Vec::is_empty) {
+            return Vec::new();
+        }
+        contacts.into_iter().zip(states).flat_map(|(of_body, state)| spread(of_body, state.reach)).collect()
+    }
+
+    /// The contacts of a dynamic body whose impulses were not zero.
+    fn loaded_contacts(&self, handle: RigidBodyHandle) -> Vec<Support> {
+        let colliders = self.world.bodies[handle].colliders();
+        let pairs = colliders.iter().flat_map(|&own| self.world.narrow_phase.contact_pairs_with(own));
+        let manifolds = pairs.flat_map(|pair| pair.solver_manifolds());
+        let mut contacts = Vec::new();
+        for manifold in manifolds {
+            let data = &manifold.data;
+            // The normal points from the first body to the second.
+            let is_first = data.rigid_body1 == Some(handle);
+            let other = if is_first { data.rigid_body2 } else { data.rigid_body1 };
+            let other = other.map(|other| &self.world.bodies[other]);
+            let normal = from_rapier(if is_first { -data.normal } else { data.normal });
+            for point in manifold.points.iter().map(|point| &point.data).filter(|point| point.impulse > 0.0) {
+                let [arm, other_arm] = if is_first {
+                    [point.solver_dp1, point.solver_dp2]
+                } else {
+                    [point.solver_dp2, point.solver_dp1]
+                };
+                let least = other.map_or(0.0, |other| {
+                    let speed = from_rapier(other.linvel())
+                        + from_rapier(other.angvel()).cross(from_rapier(other_arm));
+                    speed.dot(normal)
+                });
+                contacts.push(Support { normal, least, arm: from_rapier(arm), impulse: 0.0 });
+            }
+        }
+        contacts
     }
 
     fn touches(&self, handle: RigidBodyHandle) -> bool {

@@ -108,6 +108,20 @@ gpu_struct! {
 }
 
 gpu_struct! {
+    /// A contact of a body with a solid that carries a load; several per body.
+    pub struct Support {
+        /// Unit normal of the contact, pointing towards the body; zero if there is none.
+        normal: Vec3,
+        /// The smallest speed of the body along the normal in m/s: that of the solid.
+        least: f32,
+        /// The contact in m from `position` of the body.
+        arm: Vec3,
+        /// The impulse along the normal in N s by which the speed is kept.
+        impulse: f32,
+    }
+}
+
+gpu_struct! {
     /// The motion of a scripted body at one of [`SCRIPT_SAMPLES`] times of a frame.
     pub struct ScriptSample {
         /// Position in m.

@@ -234,8 +234,10 @@ pub struct Summary {
     pub particle_steps_per_second: f64,
     /// Simulated seconds per second of `wall`.
     pub simulated_per_wall: f64,
-    /// The largest density error of all frames, of excess and deficit.
-    pub density_error: f32,
+    /// The largest relative excess of density of all frames, as [`Stats::density_excess`].
+    pub density_excess: f32,
+    /// The largest relative deficit of density of all frames, as [`Stats::density_deficit`].
+    pub density_deficit: f32,
     /// The mean residual of the density at which the pressure iterations stop, over the rest density; `None` if the pressure
     /// is explicit.
     pub tolerance: Option<f32>,
@@ -252,4 +254,11 @@ pub struct Summary {
     pub particle_volume: [f64; 2],
     /// Time per pass, if enabled.
     pub timings: Timings,
+}
+
+impl Summary {
+    /// The larger one of [`density_excess`](Self::density_excess) and [`density_deficit`](Self::density_deficit).
+    pub fn density_error(&self) -> f32 {
+        self.density_excess.max(self.density_deficit)
+    }
 }

@@ -65,7 +65,8 @@ pub struct Run {
     /// Time of the last progress report.
     reported: Instant,
     clock: Clock,
-    density_error: f32,
+    /// The largest excess and deficit of all frames.
+    density: [f32; 2],
     residual: f32,
     volume: Option<[f64; 2]>,
     particle_volume: f64,
@@ -159,7 +160,7 @@ impl Run {
             started,
             reported: started,
             clock: Clock::default(),
-            density_error: 0.0,
+            density: [0.0; 2],
             residual: 0.0,
             volume: None,
             particle_volume,
@@ -205,8 +206,7 @@ impl Run {
         if removed > 0 {
             let all = f64::from(removed) + f64::from(self.simulation.stats().particles);
             let text = format!(
-                "{removed} particles of the fluid, {:.1} % of it, were removed because they are inside bodies or within half \
-                 a spacing of them",
+                "{removed} particles of the fluid, {:.1} % of it, were removed because they are inside bodies or in narrow gaps",
                 100.0 * f64::from(removed) / all
             );
             self.pending_events.push_back(Event::Note(text));
@@ -218,9 +218,6 @@ impl Run {
             } else {
                 Event::Warning(format!("{text}; {}", packing.advice()))
             });
-        }
-        if let Some(packing) = self.simulation.packing().filter(|packing| packing.is_overfull()) {
-            self.pending_events.push_back(Event::Warning(packing.overfull()));
         }
         Event::Started(Started {
             device: self.simulation.device_name(),
@@ -350,10 +347,11 @@ impl Run {
         self.report(found.alarms);
         let stats = Stats {
             density_error: density.excess.max(density.deficit),
+            density_excess: density.excess,
             density_deficit: density.deficit,
             ..stats
         };
-        self.density_error = self.density_error.max(stats.density_error);
+        self.density = [self.density[0].max(density.excess), self.density[1].max(density.deficit)];
         self.residual = self.residual.max(stats.residual);
         self.last = stats;
         let mut probes = self.simulation.take_probe_rows();
@@ -398,7 +396,8 @@ impl Run {
             monitor_wall: self.clock.monitor.as_secs_f64(),
             particle_steps_per_second: self.particle_steps / step_wall.max(f64::MIN_POSITIVE),
             simulated_per_wall: (stats.time - self.start_time) / wall,
-            density_error: self.density_error,
+            density_excess: self.density[0],
+            density_deficit: self.density[1],
             tolerance: self.tolerance(),
             residual: self.residual,
             energy: self.energy,

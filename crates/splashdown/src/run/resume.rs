@@ -14,7 +14,7 @@ use crate::{Checkpoint, Simulation, SimulationError};
 #[derive(Serialize, Deserialize)]
 struct RunState {
     frame: u32,
-    density_error: f32,
+    density: [f32; 2],
     volume: Option<[f64; 2]>,
     particle_volume: f64,
     watched: Vec<bool>,
@@ -89,7 +89,7 @@ impl Run {
         let between = !matches!(self.stage, Stage::Steps(_) | Stage::Fetch(_));
         let state = self.complete.filter(|_| between).map(|frame| RunState {
             frame,
-            density_error: self.density_error,
+            density: self.density,
             volume: self.volume,
             particle_volume: self.particle_volume,
             watched: self.watched.clone(),
@@ -100,8 +100,8 @@ impl Run {
     }
 
     fn restore(&mut self, state: RunState, time: f64) -> Result<(), SimulationError> {
-        let RunState { density_error, volume, particle_volume, watched, monitor, .. } = state;
-        (self.density_error, self.volume, self.particle_volume) = (density_error, volume, particle_volume);
+        let RunState { density, volume, particle_volume, watched, monitor, .. } = state;
+        (self.density, self.volume, self.particle_volume) = (density, volume, particle_volume);
         self.watched = watched;
         let particles = self.simulation.particles()?;
         let bodies = self.simulation.body_states()?;

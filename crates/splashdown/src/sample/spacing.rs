@@ -80,6 +80,15 @@ pub fn fitted_spacing(positions: &[[f32; 3]]) -> Option<f32> {
     Some(density.cbrt().recip() as f32)
 }
 
+/// How many particles are in the cube of one spacing in which a particle is, on average: 1 on a lattice.
+pub(crate) fn crowding(positions: &[[f32; 3]], spacing: f32) -> f32 {
+    let cell = |x: &[f32; 3]| x.map(|c| (c / spacing).floor() as i32);
+    let mut cells: Vec<[i32; 3]> = positions.iter().map(cell).collect();
+    cells.par_sort_unstable();
+    let squares: f64 = cells.chunk_by(|a, b| a == b).map(|same| (same.len() as f64).powi(2)).sum();
+    (squares / positions.len().max(1) as f64) as f32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,6 +108,16 @@ mod tests {
         let dense = fitted_spacing(&points([0.01 / 1.35_f32.cbrt(); 3], [16; 3])).expect("particles inside");
         assert!((dense / 0.00905 - 1.0).abs() < 0.005, "{dense}");
         assert_eq!(fitted_spacing(&points([0.01; 3], [2, 2, 2])), None, "no particle is inside");
+    }
+
+    #[test]
+    fn crowding_is_the_number_of_particles_in_a_cube() {
+        let lattice: Vec<[f32; 3]> =
+            (0..1000).map(|i| [i % 10, i / 10 % 10, i / 100].map(|c| (c as f32 + 0.5) * 0.01)).collect();
+        assert!((crowding(&lattice, 0.01) - 1.0).abs() < 1e-6);
+        assert!((crowding(&lattice, 0.02) - 8.0).abs() < 1e-6);
+        assert_eq!(crowding(&[[0.5; 3]; 300], 0.01), 300.0);
+        assert_eq!(crowding(&[], 0.01), 0.0);
     }
 
     #[test]

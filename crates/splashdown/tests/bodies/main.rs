@@ -5,6 +5,7 @@ mod devices;
 mod floating;
 mod many;
 mod motion;
+mod resting;
 mod shared;
 mod still;
 mod walls;

@@ -171,6 +171,50 @@ fn a_body_between_the_layers_of_a_block_displaces_its_volume() {
     }
 }
 
+/// Particles closer than half a spacing to the tank were removed: a seventh of this water.
+#[test]
+fn water_of_a_mesh_fills_a_tank_of_a_mesh() {
+    let spacing = 0.02;
+    let (low, size) = (Vec3::new(0.15, 0.1, 0.15), Vec3::new(0.3, 0.2, 0.2));
+    let middle = low + 0.5 * size;
+    let turn = |mut mesh: Mesh| {
+        let turn = Quat::from_rotation_y(0.5);
+        mesh.vertices.iter_mut().for_each(|v| *v = (middle + turn * (Vec3::from(*v) - middle)).to_array());
+        mesh
+    };
+    let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    splashdown_io::write_mesh(&folder.join("water.obj"), &turn(cuboid(low, low + size))).unwrap();
+    let fluid = "[[fluid.mesh]]\nmesh = \"water.obj\"\n";
+    let mut scene = pool::pool_of("method = \"dfsph\"\n", spacing, fluid, &folder.join("tank.toml"));
+    let tank = turn(tub(low, low + size.with_y(0.3), 0.05));
+    scene.bodies.push(pool::body("tank", &tank, BoundaryKind::Map));
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    let excess = simulation.packing().unwrap().density().excess;
+    assert!(excess < SOUND, "{excess}");
+    let volume = simulation.stats().particles as f32 * spacing.powi(3) / size.element_product();
+    assert!((volume - 1.0).abs() < 0.02, "the particles have {volume} times the volume of the mesh");
+    let height = |particles: &splashdown::Particles| {
+        particles.positions.iter().map(|x| x[1]).sum::<f32>() / particles.len() as f32 - low.y
+    };
+    let before = height(&simulation.particles().unwrap());
+    let stats = simulation.advance(1.0).unwrap();
+    let particles = simulation.particles().unwrap();
+    let speeds = particles.velocities.iter().map(|v| f64::from(Vec3::from(*v).length_squared()));
+    let rms = (speeds.sum::<f64>() / particles.len() as f64).sqrt();
+    // It sinks by less than half a spacing, and currents at the edges of the tank die out.
+    let sunk = 2.0 * (before - height(&particles)) / spacing;
+    eprintln!("sinks by {sunk} spacings, {rms} m/s after a second");
+    assert!(sunk.abs() < 0.5 && rms < 0.03 * f64::from(9.81 * size.y).sqrt(), "{sunk} spacings, {rms} m/s");
+    assert_eq!((particles.len() as u32, stats.wall_corrections), (stats.particles, 0), "{stats:?}");
+    // Control: the lattice has particles that close to the tank.
+    let away = (Quat::from_rotation_y(-0.5), 0.5 * size - 0.49 * spacing);
+    let is_near = |x: &&[f32; 3]| {
+        (away.0 * (Vec3::from(**x) - middle)).abs().with_y(0.0).cmpgt(away.1.with_y(1.0)).any()
+    };
+    let lattice = sample::particles(&scene).unwrap().positions;
+    assert!(lattice.iter().filter(is_near).count() > lattice.len() / 20);
+}
+
 #[test]
 fn a_frame_of_a_run_around_a_body_can_be_imported() {
     let low = Vec3::new(0.2, 0.0, 0.15);

@@ -160,6 +160,26 @@ fn imported_clouds_are_relaxed_or_reported() {
 }
 
 #[test]
+fn clouds_that_cannot_rest_are_refused() {
+    let start = |name: &str, positions: Vec<[f32; 3]>| {
+        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+        splashdown_io::write_particles(&path, &Particles::from_positions(positions)).unwrap();
+        let scene = scene(&format!("[[fluid.file]]\nfile = {name:?}\n"));
+        Simulation::new(&scene, &Device::Cpu).map(|simulation| simulation.packing().unwrap().clone())
+    };
+    // Half the spacing: 8 times the density. The densities of a million particles in one place are never summed.
+    let dense = start("dense.ply", cloud("cubic", 0.02)).expect_err("8 times as dense").to_string();
+    assert!(dense.contains("times as dense as at rest") && dense.contains("particle_spacing"), "{dense}");
+    let points: Vec<_> = (0..1_000_000).map(|i| [0.3 + 1e-9 * i as f32, 0.2, 0.2]).collect();
+    let point = start("point.ply", points).expect_err("all in one place").to_string();
+    assert!(point.contains("the fluid starts 1000000.0 times"), "{point}");
+    // Control: a few particles inside one another are relaxed.
+    let mut few = cloud("cubic", 0.04);
+    few.extend_from_within(..3);
+    assert!(start("few.ply", few).unwrap().density().excess < SOUND);
+}
+
+#[test]
 fn an_emitter_inside_the_pool_starts_without_overlap() {
     let scene = scene(&format!(
         "{}[[emitter]]\nname = \"jet\"\nposition = [0.31, 0.17, 0.23]\ndirection = [1, 0, 0]\nspeed = 0.5\nradius = 0.07\n[solver]\nmethod = \"wcsph\"\n",

@@ -67,7 +67,8 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
         mesh_format(output, &arguments.out)?;
         attributes::check_format(&arguments.attribute, output)?;
     }
-    parameters(arguments, spacing::first(arguments, &steps[0].input)?)?;
+    let first = spacing::first(arguments, &steps)?;
+    parameters(arguments, first)?;
     for output in [Some(&steps[0].output), droplet_files.first()].into_iter().flatten() {
         if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             prepare_folder(folder)?;
@@ -78,7 +79,7 @@ pub fn run(arguments: &SurfaceArguments) -> Result<(), Failure> {
     for (number, step) in steps.iter().enumerate() {
         let place = Place { number: number + 1, all: steps.len(), start_memory };
         let droplet_file = droplet_files.get(number).map(PathBuf::as_path);
-        let topology = match one((step, droplet_file), arguments, &mut executor, place) {
+        let topology = match one((step, droplet_file), arguments, &mut executor, place, first) {
             // The remaining files of a series are still processed.
             Err(failure) if steps.len() > 1 && matches!(failure.exit, Exit::Usage | Exit::Scene) => {
                 failures.push(failure.message);
@@ -109,21 +110,31 @@ fn parameters(arguments: &SurfaceArguments, particle_spacing: f32) -> Result<Sur
     Ok(params)
 }
 
-/// Reads one file and writes its mesh; returns the mesh's topology.
+/// Reads one file and writes its mesh; returns the mesh's topology. A file without particles, as those of a run before its
+/// emitters begin, gives an empty mesh, with the spacing `first` of the series.
 fn one(
     (step, droplet_file): (&Step, Option<&Path>),
     arguments: &SurfaceArguments,
     executor: &mut Executor,
     Place { number, all, start_memory }: Place,
+    first: f32,
 ) -> Result<Topology, Failure> {
     let begun = Instant::now();
     let Step { input, output } = step;
-    let particles = read(input, arguments)?;
-    let params = &parameters(arguments, spacing::of(arguments, &particles, input)?)?;
-    let selected = attributes::selected(&particles, &arguments.attribute, input)?;
+    let particles = read(input, arguments)?.unwrap_or_default();
+    let is_empty = particles.is_empty();
+    let spacing = if is_empty { first } else { spacing::of(arguments, &particles, input)? };
+    let params = &parameters(arguments, spacing)?;
+    let selected = match is_empty {
+        true => Vec::new(),
+        false => attributes::selected(&particles, &arguments.attribute, input)?,
+    };
     let read = Instant::now();
-    let (mut surface, droplets) = separated(&particles.positions, params, arguments, executor)
-        .map_err(|error| input_failure(error, input))?;
+    let (mut surface, droplets) = match is_empty {
+        true => Default::default(),
+        false => separated(&particles.positions, params, arguments, executor)
+            .map_err(|error| input_failure(error, input))?,
+    };
     let surface_seconds = read.elapsed().as_secs_f64();
     if let Some(path) = droplet_file {
         write_droplets(path, &droplets_of(&particles, &droplets, params.particle_spacing))?;
@@ -270,13 +281,17 @@ fn conclude(
     Ok(())
 }
 
-/// Reads a particle file. An unreadable input file has a different exit code from an unwritable output file.
-fn read(path: &Path, arguments: &SurfaceArguments) -> Result<Particles, Failure> {
+/// Reads a particle file; `None` if it contains no particles. An unreadable input file has a different exit code from an
+/// unwritable output file.
+fn read(path: &Path, arguments: &SurfaceArguments) -> Result<Option<Particles>, Failure> {
     let particles = match arguments.attribute[..] {
         [] => read_particles(path),
         _ => read_particles_with_attributes(path),
     };
-    particles.map_err(|error| Failure::new(Exit::Scene, error.to_string()))
+    match particles {
+        Err(IoError::NoParticles { .. }) => Ok(None),
+        result => result.map(Some).map_err(|error| Failure::new(Exit::Scene, error.to_string())),
+    }
 }
 
 /// Adds the name of the input file to an error, and chooses the exit code by whether the arguments or the file cause

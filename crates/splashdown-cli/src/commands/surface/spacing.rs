@@ -4,6 +4,7 @@ use std::path::Path;
 
 use splashdown::sample::typical_spacing;
 use splashdown_io::Particles;
+use splashdown_run::sequence::Step;
 
 use crate::args::SurfaceArguments;
 use crate::exit::{Exit, Failure};
@@ -17,16 +18,29 @@ const MAX_GIVEN_RATIO: f32 = 1.8;
 /// means that the number is wrong, or that the positions were scaled.
 const MAX_CONTAINED_RATIO: f32 = 100.0;
 
-/// The spacing for the first file, whose particles a given spacing has to fit.
+/// The spacing for the first file with particles, which a given spacing has to fit.
 ///
 /// # Errors
-/// [`Exit::Usage`] if it does not fit, or if none is known; [`Exit::Scene`] if the file cannot be read.
-pub fn first(arguments: &SurfaceArguments, path: &Path) -> Result<f32, Failure> {
-    match arguments.particle_spacing {
-        Some(given) if arguments.force => Ok(given),
-        Some(given) => fitting(given, &super::read(path, arguments)?, path),
-        None => contained(&super::read(path, arguments)?, arguments.force, path),
+/// [`Exit::Usage`] if it does not fit, or if none is known; [`Exit::Scene`] if a file cannot be read, or none has particles.
+pub fn first(arguments: &SurfaceArguments, steps: &[Step]) -> Result<f32, Failure> {
+    let given = arguments.particle_spacing;
+    if let (Some(given), true) = (given, arguments.force) {
+        return Ok(given);
     }
+    for Step { input, .. } in steps {
+        if let Some(particles) = super::read(input, arguments)? {
+            return match given {
+                Some(given) => fitting(given, &particles, input),
+                None => contained(&particles, arguments.force, input),
+            };
+        }
+    }
+    let name = steps.first().map(|step| step.input.display().to_string()).unwrap_or_default();
+    let message = match steps.len() {
+        0 | 1 => format!("`{name}` contains no particles"),
+        count => format!("none of the {count} files contains particles, beginning with `{name}`"),
+    };
+    Err(Failure::new(Exit::Scene, message))
 }
 
 /// The spacing for one of the files.
@@ -39,6 +53,7 @@ pub fn of(arguments: &SurfaceArguments, particles: &Particles, path: &Path) -> R
 
 /// A given spacing, if it fits the particles.
 fn fitting(given: f32, particles: &Particles, path: &Path) -> Result<f32, Failure> {
+    separate(particles, path)?;
     let found = estimated(particles).filter(|&found| !is_near(given, found, MAX_GIVEN_RATIO));
     let Some(found) = found else { return Ok(given) };
     let hint = if (given * 2.0 / found - 1.0).abs() < 0.15 { " (is it the particle radius?)" } else { "" };
@@ -51,6 +66,9 @@ fn fitting(given: f32, particles: &Particles, path: &Path) -> Result<f32, Failur
 
 /// The spacing that a file contains.
 fn contained(particles: &Particles, force: bool, path: &Path) -> Result<f32, Failure> {
+    if !force {
+        separate(particles, path)?;
+    }
     let (name, found) = (path.display(), estimated(particles));
     let digits = found.map(|found| human::three_digits(f64::from(found))).unwrap_or_default();
     match (particles.info.particle_spacing, found) {
@@ -69,6 +87,20 @@ fn contained(particles: &Particles, force: bool, path: &Path) -> Result<f32, Fai
             "--particle-spacing is missing, and `{name}` has too few particles to estimate it"
         ))),
     }
+}
+
+/// Refuses particles of which most are at the same place as others.
+fn separate(particles: &Particles, path: &Path) -> Result<(), Failure> {
+    if typical_spacing(&particles.positions) != Some(0.0) {
+        return Ok(());
+    }
+    Err(Failure::new(
+        Exit::Scene,
+        format!(
+            "most particles of `{}` are at the same place as others: write the file again, or --force to use it",
+            path.display()
+        ),
+    ))
 }
 
 fn estimated(particles: &Particles) -> Option<f32> {

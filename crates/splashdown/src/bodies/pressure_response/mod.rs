@@ -1,12 +1,13 @@
-//! The velocities that dynamic bodies get by the present implicit pressure and all other forces: two vectors per body.
+//! The velocities that dynamic bodies get by the present implicit pressure and all other forces, as far as their
+//! [supports](super::support) allow: two vectors per body.
 
 mod cpu;
 
 use glam::Vec4;
 use splashdown_gpu::{PassDesc, bindings};
 
-use super::motion;
-use super::types::{self, Body};
+use super::types::{self, Body, Support};
+use super::{motion, support};
 use crate::state::{PARAMS, Params, SOLVE, STATE, SolveState, StepState};
 
 bindings! {
@@ -19,6 +20,7 @@ bindings! {
         sums: read [u32],
         pressure_sums: write [u32],
         responses: write [Vec4],
+        supports: write [Support],
     }
 }
 
@@ -26,7 +28,7 @@ bindings! {
 pub static PRESSURE_RESPONSE: PassDesc = PassDesc {
     label: "bodies.pressure_response",
     wgsl: include_str!("pressure_response.wgsl"),
-    imports: &[STATE, SOLVE, PARAMS, types::WGSL, motion::ALGEBRA, motion::VELOCITIES],
+    imports: &[STATE, SOLVE, PARAMS, types::WGSL, motion::ALGEBRA, motion::VELOCITIES, support::WGSL],
     entry: "pressure_response",
     workgroup_size: [64, 1, 1],
     constants: &[],

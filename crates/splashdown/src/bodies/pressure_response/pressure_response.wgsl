@@ -2,6 +2,7 @@
 #import sph/solve
 #import sph/body
 #import sph/body_velocities
+#import sph/support
 
 #bindings
 
@@ -25,7 +26,7 @@ fn pressure_response(@builtin(global_invocation_id) gid: vec3<u32>) {
     let torque = quantum * params.support_radius * vec3(whole(word + 6u), whole(word + 8u), whole(word + 10u));
     var next = BodyVelocities(bodies[b].velocity, bodies[b].angular_velocity);
     if (bodies[b].kind == BODY_DYNAMIC) {
-        next = next_velocities(b, force, torque);
+        next = supported(b, next_velocities(b, force, torque));
     }
     responses[2u * b] = vec4(next.linear, 0.0);
     responses[2u * b + 1u] = vec4(next.angular, 0.0);

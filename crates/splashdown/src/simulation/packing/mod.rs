@@ -35,8 +35,11 @@ const PACKED: f32 = 0.75;
 const WEIGHTLESS_TOLERANCE: f32 = 0.1 * TOLERANCE;
 /// Fluid that starts with a smaller largest excess than this comes to rest.
 const MINOR: f32 = 0.05;
-/// Fluid whose mean density is this many times that at rest is not relaxed: it would take minutes, and fill twice the space.
+/// Fluid whose mean density is this many times that at rest is refused: it would fill at least twice the space.
 const OVERFULL: f32 = 2.0;
+/// Mean number of particles in the same cube of one spacing above which the density is not even summed: a sum over all
+/// pairs of a million particles in one place would take hours.
+const CROWDED: f32 = 16.0;
 /// The name of the task for reports of progress.
 const TASK: &str = "initial packing";
 /// Maximum number of rounds.
@@ -78,13 +81,6 @@ impl Packing {
         self.after.as_ref().unwrap_or(&self.before)
     }
 
-    /// Whether the fluid is on average more than twice as dense as at rest, and has not been relaxed. Its particles are much
-    /// closer than `particle_spacing`.
-    pub fn is_overfull(&self) -> bool {
-        let rest = self.before.max / (1.0 + self.before.excess);
-        self.before.mean > OVERFULL * rest
-    }
-
     /// What to do about fluid that is not [sound](Self::is_sound).
     pub fn advice(&self) -> &'static str {
         if self.density().excess < MINOR {
@@ -92,15 +88,6 @@ impl Packing {
         } else {
             "the fluid does not fit: move its pieces and the bodies apart, or check fluid.particle_spacing"
         }
-    }
-
-    /// The message about fluid that is [overfull](Self::is_overfull).
-    pub fn overfull(&self) -> String {
-        format!(
-            "the fluid starts {:.1} times as dense as at rest and is not relaxed: set fluid.particle_spacing to the distance of \
-             its particles, or leave some out",
-            self.before.mean * (1.0 + self.before.excess) / self.before.max
-        )
     }
 
     /// Whether the fluid is at most 2 % too dense.
@@ -128,8 +115,11 @@ impl std::fmt::Display for Packing {
     }
 }
 
-/// Measures the particles of a scene, and relaxes them if they are too dense, but at most twice as dense as at rest. `None`
-/// for a scene whose fluid is one lattice without bodies and emitters, or empty.
+/// Measures the particles of a scene, and relaxes them if they are too dense. `None` for a scene whose fluid is one lattice
+/// without bodies and emitters, or empty.
+///
+/// # Errors
+/// [`sample::SampleError::Overfull`] for fluid that is on average more than twice as dense as at rest.
 pub(super) fn relax(
     scene: &Scene,
     particles: &mut Particles,
@@ -141,11 +131,18 @@ pub(super) fn relax(
         return Ok(None);
     }
     let begun = Instant::now();
+    let crowding = sample::crowding(&particles.positions, scene.fluid.particle_spacing);
+    if crowding > CROWDED {
+        return Err(sample::SampleError::Overfull { ratio: crowding }.into());
+    }
     let first = particles.positions.clone();
     let mut relaxation = Relaxation::new(scene, &first, bodies)?;
     let before = relaxation.density(&first)?;
+    let ratio = before.mean * (1.0 + before.excess) / before.max;
+    if ratio > OVERFULL {
+        return Err(sample::SampleError::Overfull { ratio }.into());
+    }
     let mut packing = Packing { before, after: None, rounds: 0, moved: 0.0, seconds: 0.0 };
-    let most_rounds = if packing.is_overfull() { 0 } else { most_rounds };
     if most_rounds > 0 {
         let half = |part: f32| progress(TASK, 0.5 * part);
         packing.rounds = around_bodies::pack(scene, &mut particles.positions, bodies, &half)?;
@@ -192,14 +189,6 @@ mod tests {
     fn packing(mean: f32, max: f32) -> Packing {
         let before = InitialDensity { mean, max, place: [0.0; 3], excess: max / 1000.0 - 1.0 };
         Packing { before, after: None, rounds: 0, moved: 0.0, seconds: 0.0 }
-    }
-
-    #[test]
-    fn only_fluid_that_is_too_dense_on_average_is_overfull() {
-        assert!(packing(7200.0, 8000.0).is_overfull());
-        assert!(packing(7200.0, 8000.0).overfull().contains("7.2 times as dense"));
-        assert!(!packing(1350.0, 3000.0).is_overfull(), "a few particles inside one another");
-        assert!(!packing(990.0, 1000.0).is_overfull());
     }
 
     #[test]
