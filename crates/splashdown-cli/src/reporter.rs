@@ -37,7 +37,7 @@ impl ConsoleReporter {
         let results = partial_results(&outcome);
         let RunOutcome { end, folder, last_frame, files, films, picture_timings, .. } = outcome;
         // The files that belong to no single frame.
-        let whole = files.iter().map(|file| &file.path).filter(|path| !is_numbered(path));
+        let whole = files.iter().map(|file| &file.path).filter(|path| !is_of_frame(path, folder.root()));
         let whole = whole.chain(films.iter().map(|film| &film.path)).cloned().chain([folder.report()]);
         let whole: BTreeSet<_> = whole.collect();
         let closing: Vec<String> = whole.iter().map(|path| path.display().to_string()).collect();
@@ -89,14 +89,15 @@ impl ConsoleReporter {
     }
 }
 
-/// Whether a file is one of a series: `surface_0012.ply`, but not `scene_0006.usdc` of a run that begins there.
-fn is_numbered(path: &Path) -> bool {
-    if path.extension().is_some_and(|ending| ending == "usdc") {
+/// Whether a file belongs to one frame or checkpoint: `mesh/surface_0012.ply`. Those in the run's folder itself, such as
+/// `scene_0006.usdc` of a run that begins there, and the tables of bodies and probes belong to all.
+fn is_of_frame(path: &Path, root: &Path) -> bool {
+    let folder = path.parent().unwrap_or(root);
+    if folder == root || folder == root.join("bodies") || folder == root.join("probes") {
         return false;
     }
     let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-    stem.rsplit_once('_')
-        .is_some_and(|(_, number)| number.len() >= 4 && number.bytes().all(|digit| digit.is_ascii_digit()))
+    stem.rsplit_once('_').is_some_and(|(_, number)| number.bytes().all(|digit| digit.is_ascii_digit()))
 }
 
 impl Reporter for ConsoleReporter {

@@ -12,7 +12,8 @@ use crate::input::{MAX_COUNT, regular};
 /// Reads a triangle mesh in the format of the file name's ending ([`Format`]).
 ///
 /// Coordinates are those of the file, without any unit or up-axis applied. A polygon becomes a fan of triangles. Normals
-/// are dropped, because a solid is defined by its triangles. Vertices at the same position are merged in formats that
+/// are dropped, because a solid is defined by its triangles; velocities of a PLY file remain if
+/// all are finite. Vertices at the same position are merged in formats that
 /// do not share vertices (STL) or split them at texture seams (glTF). The returned mesh has at least one triangle, its
 /// vertices are finite and its vertex numbers in range; [`Mesh::topology`] checks whether it is closed.
 ///
@@ -24,7 +25,10 @@ pub fn read_mesh(path: &Path) -> Result<Mesh, IoError> {
     let (format, read) = format.ok_or_else(|| format::unknown(path, Format::reads_meshes))?;
     regular(path)?;
     let mut mesh = read(path)?;
-    (mesh.normals, mesh.velocities) = (Vec::new(), Vec::new());
+    mesh.normals.clear();
+    if finite("velocities", &mesh.velocities).is_err() {
+        mesh.velocities.clear();
+    }
     usable(&mesh).map_err(|reason| IoError::malformed(path, format, reason))?;
     for (what, given) in [("vertices", mesh.vertices.len()), ("triangles", mesh.len())] {
         if given > MAX_COUNT {

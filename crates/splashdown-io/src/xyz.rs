@@ -4,7 +4,7 @@
 //! chemistry, with a count, a title and the name of an element before every point; and raw little-endian float32, three
 //! per point, which `splashsurf` reads. A file with a byte that is not text is of the third format, unless it is text in
 //! UTF-16. Empty lines and lines that begin with `#` or `//` are skipped. Words are separated by white space, commas or
-//! semicolons; in a line with semicolons a comma is the decimal separator. In the format of chemistry an element may be given
+//! semicolons; between semicolons a comma is the decimal separator. In the format of chemistry an element may be given
 //! by its number.
 
 use std::path::Path;
@@ -34,7 +34,7 @@ pub(crate) fn read(path: &Path, _: Wanted) -> Result<Particles, IoError> {
 }
 
 /// The text of a file in UTF-16 with a byte order mark, as some programs on Windows write it. The mark may also be the
-/// beginning of a number: only text with numbers of ASCII counts.
+/// beginning of a number: only text without control characters counts.
 fn utf_16(bytes: &[u8]) -> Option<String> {
     let unit = match bytes {
         [0xff, 0xfe, ..] => u16::from_le_bytes,
@@ -43,7 +43,8 @@ fn utf_16(bytes: &[u8]) -> Option<String> {
     };
     let (pairs, []) = bytes[2..].as_chunks() else { return None };
     let text = String::from_utf16(&pairs.iter().map(|pair| unit(*pair)).collect::<Vec<_>>()).ok()?;
-    text.is_ascii().then_some(text)
+    let is_text = |c: char| !c.is_control() || matches!(c, '\t' | '\n' | '\r');
+    text.chars().all(is_text).then_some(text)
 }
 
 fn text(text: &str) -> Result<Vec<[f32; 3]>, String> {
@@ -64,13 +65,15 @@ fn text(text: &str) -> Result<Vec<[f32; 3]>, String> {
         if line.is_empty() || line.starts_with('#') || line.starts_with("//") {
             continue;
         }
-        let line = if line.contains(';') { &line.replace(',', ".") } else { line };
+        let fields = line.split(';').filter(|field| !field.trim().is_empty()).count();
+        let line = if fields >= 3 { &line.replace(',', ".") } else { line };
         let mut words = words(line);
         if line.starts_with(|c: char| c.is_ascii_alphabetic()) && !is_number(line) {
             words.next();
             has_elements = false;
         }
-        let is_element = words.clone().next().is_some_and(|word| word.parse::<u8>().is_ok());
+        let is_element = words.clone().next().and_then(|word| word.parse::<u8>().ok());
+        let is_element = is_element.is_some_and(|number| (1..=118).contains(&number));
         let mut next = || words.next().and_then(|word| word.parse::<f32>().ok());
         match [next(), next(), next()] {
             [Some(x), Some(y), Some(z)] => {
@@ -114,6 +117,7 @@ mod tests {
             "2\nwater at 0 s\nH 1 -2.5 3e-3\nO2 4 5 6\n",
             "2\nwater with numbers of elements\n1 1 -2.5 3e-3\n8 4 5 6\n",
             "2\nnames and further columns\nH 1 -2.5 3e-3 7\nO 4 5 6 8\n",
+            "1.0, -2.5, 3e-3;\n4, 5, 6;",
             "1,0;-2,5;3e-3\n4;5,0;6",
             "\u{feff}1\t-2.5\t3e-3\t1000\n4 5 6 1000",
         ] {
@@ -123,7 +127,7 @@ mod tests {
 
     #[test]
     fn utf_16_is_told_from_numbers() {
-        let text = "1 2 3\r\n";
+        let text = "# água\r\n1 2 3\r\n";
         let units = || std::iter::once(0xfeff).chain(text.encode_utf16());
         let little: Vec<u8> = units().flat_map(u16::to_le_bytes).collect();
         let big: Vec<u8> = units().flat_map(u16::to_be_bytes).collect();

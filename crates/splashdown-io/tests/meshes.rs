@@ -53,6 +53,19 @@ fn meshes_round_trip_in_every_format() {
     }
 }
 
+#[test]
+fn velocities_of_a_ply_mesh_are_read_if_they_are_finite() {
+    let folder = folder();
+    let path = folder.path().join("moving.ply");
+    let torus = common::torus(1.0, 0.3, 12, 8);
+    let mut velocities: Vec<[f32; 3]> = (0..torus.vertices.len()).map(|i| [i as f32, 0.0, -1.0]).collect();
+    write_mesh(&path, &torus.clone().with_velocities(velocities.clone())).unwrap();
+    assert_eq!(read_mesh(&path).unwrap().velocities, velocities);
+    velocities[3][1] = f32::NAN;
+    write_mesh(&path, &torus.with_velocities(velocities)).unwrap();
+    assert!(read_mesh(&path).unwrap().velocities.is_empty());
+}
+
 /// A file as read by `stl_io`.
 fn by_stl_io(path: &Path) -> Mesh {
     let read = stl_io::read_stl(&mut fs::File::open(path).unwrap()).unwrap();

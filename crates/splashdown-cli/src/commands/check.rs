@@ -217,7 +217,7 @@ fn describe(
 fn suited_to(solver: &Solver) -> &'static str {
     match (solver.method, solver.density) {
         (Method::Dfsph, _) => {
-            "pictures, films, viscous liquids, large scenes; for pressures at a point, forces and waves set \
+            "pictures, films, viscous liquids, large scenes; for pressures at a point, forces, drag, waves and oscillations set \
              accuracy = \"engineering\""
         }
         (Method::Wcsph, DensityMode::Continuity) => {

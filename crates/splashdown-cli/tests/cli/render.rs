@@ -147,6 +147,12 @@ fn slow_motion_shows_moments_between_the_frames() -> Outcome {
     }
     // A single picture has no film.
     assert_eq!(names(&place.path("one"))?, ["picture_0000.png"]);
+    // Without particles the velocities are those of the meshes.
+    fs::remove_dir_all(place.path("out/particles"))?;
+    let output = render(&place, &["-o", "meshes", "--slow", "2"])?;
+    assert!(output.status.success() && !stderr(&output).contains("velocities"), "{}", stderr(&output));
+    let slow = pictures(&place, "meshes")?;
+    assert!(slow[1] != slow[0] && slow[1] != slow[2]);
     Ok(())
 }
 

@@ -82,7 +82,7 @@ fn check_prints_derived_quantities() -> Outcome {
     }
     assert!(report["speed"]["expected_seconds"].as_f64().is_some_and(|seconds| seconds > 0.0));
     assert_eq!(report["resolution"]["depth"].as_f64().map(f64::round), Some(6.0), "{report}");
-    assert!(stdout(&words).contains("validated: standing wave, depth 20 spacings (here 6)"));
+    assert!(stdout(&words).contains("validated: standing wave without bodies, depth 20 spacings (here 6)"));
     Ok(())
 }
 

@@ -15,7 +15,7 @@ use crate::{FoundCheckpoint, RunError, RunFolder, find_checkpoint};
 /// # Errors
 /// As [`reported_scene`].
 pub fn scene_of_run(folder: &Path) -> Result<Scene, RunError> {
-    if let Some(scene) = Report::read(folder).and_then(|report| report.scene_in_text()) {
+    if let Some(scene) = Report::read(folder).ok().and_then(|report| report.scene_in_text()) {
         return Ok(scene);
     }
     if let Ok(FoundCheckpoint { checkpoint, notes, .. }) = find_checkpoint(folder)
@@ -35,7 +35,7 @@ pub fn reported_scene(folder: &Path) -> Result<Scene, RunError> {
     let path = RunFolder::new(folder.to_owned(), 0).report();
     let unknown =
         || RunError::UnknownScene(format!("`{}` does not name the scene of this run", path.display()));
-    let report = Report::read(folder).ok_or_else(unknown)?;
+    let report = Report::read(folder).map_err(RunError::UnknownScene)?;
     if let Some(scene) = report.scene_in_text() {
         return Ok(scene);
     }
@@ -59,9 +59,20 @@ pub fn reported_scene(folder: &Path) -> Result<Scene, RunError> {
 struct Report(Value);
 
 impl Report {
-    fn read(folder: &Path) -> Option<Self> {
-        let text = fs::read_to_string(RunFolder::new(folder.to_owned(), 0).report()).ok()?;
-        serde_json::from_str(&text).ok().map(Self)
+    /// # Errors
+    /// Why it cannot be read.
+    fn read(folder: &Path) -> Result<Self, String> {
+        let path = RunFolder::new(folder.to_owned(), 0).report();
+        let text = fs::read_to_string(&path).map_err(|error| {
+            if folder.is_dir() {
+                format!("`{}` cannot be read: {error}; give the output folder of a run", path.display())
+            } else {
+                format!("there is no folder `{}`: give the output folder of a run", folder.display())
+            }
+        })?;
+        serde_json::from_str(&text)
+            .map(Self)
+            .map_err(|error| format!("`{}` is damaged: {error}", path.display()))
     }
 
     fn word(&self, key: &str) -> Option<&str> {

@@ -6,6 +6,7 @@ const BODY_PARTICLES: u32 = 1u;
 const NO_BODY: u32 = 0xffffffffu;
 const SCRIPT_SAMPLES: u32 = 65u;
 const SUM_WORDS: u32 = 12u;
+const SUPPORTS: u32 = 8u;
 
 struct Body {
     position: vec3<f32>,
@@ -76,7 +77,7 @@ fn solid_gradient_of(contact: Contact) -> vec3<f32> {
 
 struct Support {
     normal: vec3<f32>,
-    least: f32,
+    min_speed: f32,
     arm: vec3<f32>,
     impulse: f32,
 }

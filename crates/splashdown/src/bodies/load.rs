@@ -176,6 +176,8 @@ pub fn mesh_of(owner: &str, source: &MeshSource) -> Result<Mesh, BodyError> {
         };
     }
     mesh.normals.clear();
+    // Those of a frame of a run mean nothing for a solid.
+    mesh.velocities.clear();
     Ok(mesh)
 }
 

@@ -54,8 +54,7 @@ use crate::solid::{DistanceField, RepairReport};
 use crate::state::Params;
 use rigid::Rigid;
 use scripted::ScriptedMotion;
-use support::SUPPORTS;
-use types::Support;
+use types::{SUPPORTS, Support};
 
 /// Numbers per body in a checkpoint: five vectors, a quaternion and the work.
 const MOTION_COLUMNS: usize = 20;
@@ -102,7 +101,7 @@ pub struct BodyState {
     pub angular_velocity: Vec3,
     /// Force of the fluid in the last step, in N.
     pub force: Vec3,
-    /// Its torque about the centre of mass (dynamic bodies) or the mesh's origin, in N m.
+    /// Its torque in N m about the centre of mass of a dynamic body, the hinge of a hinged one, and else the origin of the mesh.
     pub torque: Vec3,
     /// The work of the body on the fluid since the start, in J.
     pub work: f32,
@@ -205,7 +204,9 @@ pub struct Bodies {
     /// The distance fields, for counting particles inside bodies on the host.
     fields: Vec<DistanceField>,
     rigid: Option<Rigid>,
-    /// Whether the device has contacts that support bodies.
+    /// Whether contacts hold bodies in the pressure solve.
+    holds: bool,
+    /// Whether the device has such contacts.
     are_supported: bool,
 }
 
@@ -245,7 +246,8 @@ impl Bodies {
             sums: executor.create_from("sums", &vec![0; SUM_WORDS * states.len()])?,
             pressure_sums: executor.create_from("pressure_sums", &vec![0; SUM_WORDS * states.len()])?,
             responses: executor.create("responses", 2 * states.len())?,
-            supports: executor.create("supports", SUPPORTS * states.len())?,
+            supports: executor
+                .create_from("supports", &vec![bytemuck::Zeroable::zeroed(); SUPPORTS * states.len()])?,
             unknowns: executor.create("unknowns", viscous::VECTORS * states.len())?,
             has_dynamic: states.iter().any(|state| state.kind == Body::DYNAMIC),
             mobility,
@@ -262,6 +264,7 @@ impl Bodies {
             reports: loaded.iter().map(|body| body.solid.report).collect(),
             fields: loaded.into_iter().map(|body| body.solid.field).collect(),
             rigid,
+            holds: params.is_implicit == 1,
             are_supported: false,
         })
     }
@@ -315,7 +318,8 @@ impl Bodies {
         let Some(rigid) = &mut self.rigid else { return Ok(None) };
         let mut states = executor.fetch(self.bodies).await?;
         let collided = rigid.resolve(&mut states, seconds);
-        let supports = rigid.supports(&states);
+        // An explicit pressure does not ask for the response of bodies.
+        let supports = if self.holds { rigid.supports(&states) } else { Vec::new() };
         // Most bodies have none, most of the time.
         if self.are_supported || !supports.is_empty() {
             self.are_supported = !supports.is_empty();
@@ -407,7 +411,7 @@ impl Bodies {
             body.work = row[19];
         }
         self.rigid = collisions;
-        if let Some(rigid) = &self.rigid {
+        if let (Some(rigid), true) = (&self.rigid, self.holds) {
             let supports = rigid.supports(&bodies);
             self.are_supported = !supports.is_empty();
             if self.are_supported {

@@ -15,6 +15,7 @@
 //! with more corners would tip over into the floor.
 
 use glam::{Quat, Vec3, Vec4};
+use rapier3d::geometry::NEW_CONTACT_BIT;
 use rapier3d::math::Matrix;
 use rapier3d::prelude::{
     ActiveHooks, CoefficientCombineRule, ColliderBuilder, ContactModificationContext, Group,
@@ -106,14 +107,19 @@ impl Rigid {
                 collided = true;
                 let (velocity, spin) = means[b];
                 let axis = axis(state).map(|axis| state.rotation() * axis);
+                let mut change = Vec3::ZERO;
                 if axis.is_none() {
                     state.position = from_rapier(body.position().translation);
-                    state.velocity += from_rapier(body.linvel()) - velocity;
+                    change = from_rapier(body.linvel()) - velocity;
+                    state.velocity += change;
                 }
                 let [x, y, z, w] = body.position().rotation.to_array();
                 state.orientation = Vec4::new(x, y, z, w).normalize_or(state.orientation);
                 let turn = from_rapier(body.angvel()) - spin;
-                state.angular_velocity += axis.map_or(turn, |axis| axis.dot(turn) * axis);
+                let turn = axis.map_or(turn, |axis| axis.dot(turn) * axis);
+                state.angular_velocity += turn;
+                // The motion pass took the work of a body that nothing holds.
+                state.work -= 0.5 * seconds * (state.force.dot(change) + state.torque.dot(turn));
             }
             self.before[b] = place(state);
         }
@@ -125,7 +131,7 @@ impl Rigid {
         self.before = states.iter().map(place).collect();
     }
 
-    /// The contacts that carried a load in the last batch, [`SUPPORTS`](super::support::SUPPORTS) per body; empty if there is none.
+    /// The contacts that carried a load in the last batch, [`SUPPORTS`](super::types::SUPPORTS) per body; empty if there is none.
     pub fn supports(&self, states: &[Body]) -> Vec<Support> {
         let of_body = |(state, &handle): (&Body, &RigidBodyHandle)| {
             if state.kind == Body::DYNAMIC { self.loaded_contacts(handle) } else { Vec::new() }
@@ -137,9 +143,10 @@ impl Rigid {
         contacts.into_iter().zip(states).flat_map(|(of_body, state)| spread(of_body, state.reach)).collect()
     }
 
-    /// The contacts of a dynamic body whose impulses were not zero.
+    /// The contacts of a dynamic body whose impulses were not zero. Near its hinge a contact cannot hold a body.
     fn loaded_contacts(&self, handle: RigidBodyHandle) -> Vec<Support> {
-        let colliders = self.world.bodies[handle].colliders();
+        let own = &self.world.bodies[handle];
+        let colliders = own.colliders();
         let pairs = colliders.iter().flat_map(|&own| self.world.narrow_phase.contact_pairs_with(own));
         let manifolds = pairs.flat_map(|pair| pair.solver_manifolds());
         let mut contacts = Vec::new();
@@ -150,18 +157,24 @@ impl Rigid {
             let other = if is_first { data.rigid_body2 } else { data.rigid_body1 };
             let other = other.map(|other| &self.world.bodies[other]);
             let normal = from_rapier(if is_first { -data.normal } else { data.normal });
-            for point in manifold.points.iter().map(|point| &point.data).filter(|point| point.impulse > 0.0) {
+            // Other points may still have the impulses of earlier steps.
+            let solved = data.solver_contacts.iter().map(|contact| contact.contact_id[0] & !NEW_CONTACT_BIT);
+            let points = solved.filter_map(|index| Some(&manifold.points.get(index as usize)?.data));
+            for point in points.filter(|point| point.impulse > 0.0) {
                 let [arm, other_arm] = if is_first {
                     [point.solver_dp1, point.solver_dp2]
                 } else {
                     [point.solver_dp2, point.solver_dp1]
                 };
-                let least = other.map_or(0.0, |other| {
+                if !can_move(Some(own), own.translation() + arm, data.normal) {
+                    continue;
+                }
+                let min_speed = other.map_or(0.0, |other| {
                     let speed = from_rapier(other.linvel())
                         + from_rapier(other.angvel()).cross(from_rapier(other_arm));
                     speed.dot(normal)
                 });
-                contacts.push(Support { normal, least, arm: from_rapier(arm), impulse: 0.0 });
+                contacts.push(Support { normal, min_speed, arm: from_rapier(arm), impulse: 0.0 });
             }
         }
         contacts

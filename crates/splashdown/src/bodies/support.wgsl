@@ -2,7 +2,6 @@
 #import sph/body_algebra
 #import sph/body_velocities
 
-const SUPPORTS: u32 = 8u;
 const SUPPORT_SWEEPS: u32 = 16u;
 
 fn supported(b: u32, free: BodyVelocities) -> BodyVelocities {
@@ -15,19 +14,23 @@ fn supported(b: u32, free: BodyVelocities) -> BodyVelocities {
     }
     let q = bodies[b].orientation;
     let inverse_mass = bodies[b].inverse_mass;
-    for (var visit = 0u; visit < SUPPORT_SWEEPS * count; visit += 1u) {
-        let s = first + visit % count;
-        let normal = supports[s].normal;
-        let lever = cross(supports[s].arm, normal);
-        let spin = spin_of(b, q, lever);
-        let response = inverse_mass + dot(lever, spin);
-        if (response > 0.0) {
-            let approach = supports[s].least - dot(normal, next.linear) - dot(lever, next.angular);
-            let before = supports[s].impulse;
-            let after = max(before + approach / response, 0.0);
-            supports[s].impulse = after;
-            next.linear += (after - before) * inverse_mass * normal;
-            next.angular += (after - before) * spin;
+    var has_changed = count > 0u;
+    for (var sweep = 0u; sweep < SUPPORT_SWEEPS && has_changed; sweep += 1u) {
+        has_changed = false;
+        for (var s = first; s < first + count; s += 1u) {
+            let normal = supports[s].normal;
+            let lever = cross(supports[s].arm, normal);
+            let spin = spin_of(b, q, lever);
+            let response = inverse_mass + dot(lever, spin);
+            if (response > 0.0) {
+                let approach = supports[s].min_speed - dot(normal, next.linear) - dot(lever, next.angular);
+                let before = supports[s].impulse;
+                let after = max(before + approach / response, 0.0);
+                supports[s].impulse = after;
+                has_changed |= after != before;
+                next.linear += (after - before) * inverse_mass * normal;
+                next.angular += (after - before) * spin;
+            }
         }
     }
     return next;

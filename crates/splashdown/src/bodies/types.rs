@@ -113,7 +113,7 @@ gpu_struct! {
         /// Unit normal of the contact, pointing towards the body; zero if there is none.
         normal: Vec3,
         /// The smallest speed of the body along the normal in m/s: that of the solid.
-        least: f32,
+        min_speed: f32,
         /// The contact in m from `position` of the body.
         arm: Vec3,
         /// The impulse along the normal in N s by which the speed is kept.
@@ -143,6 +143,9 @@ gpu_struct! {
 
 /// Times of a frame at which the host samples the motion of a scripted body; the motion between them is a cubic.
 pub const SCRIPT_SAMPLES: usize = 65;
+
+/// The largest number of contacts that support a body. Three or four that are far apart hold it.
+pub const SUPPORTS: usize = 8;
 
 /// Words per body in the buffer of sums: force and torque, 64 bits each.
 pub const SUM_WORDS: usize = 12;

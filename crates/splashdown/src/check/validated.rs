@@ -66,11 +66,11 @@ pub(super) fn validated(scene: &Scene, depth: Option<f32>) -> Vec<Validated> {
             here: None,
         });
         cases.push(Validated {
-            case: "standing wave",
+            case: "standing wave without bodies",
             across: "depth",
             spacings: 20,
             error: match solver {
-                Solver::Continuity => "period -0.81 %, 0.57 % of the height lost per period, without bodies",
+                Solver::Continuity => "period -0.81 %, 0.57 % of the height lost per period",
                 Solver::Engineering => "period 0.13 %, 0.95 % of the height lost per period",
                 Solver::Summation => "period -12 %, 9.6 % of the height lost per period",
                 Solver::Dfsph => "period -2.7 %, 2.3 % of the height lost per period",

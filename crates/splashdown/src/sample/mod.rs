@@ -45,11 +45,11 @@ pub use spacing::{fitted_spacing, typical_spacing};
 /// would displace more than its volume (a quarter more for a ball 12 spacings across), so all particles whose
 /// centres lie outside stay.
 const CLEARANCE: [f32; 2] = [0.49, 0.05];
-/// For fluid that is packed around bodies: all particles outside remain, and with them the volume. The offset separates particles on opposite faces of
-/// a body, so that it displaces its volume if both lie in layers of particles.
+/// For fluid that is packed around bodies: all particles outside remain, and with them the volume. The offset separates
+/// particles on opposite faces of a body, so that it displaces its volume if both lie in layers of particles.
 const CUT: (f32, Vec3) = (0.0, Vec3::new(0.03, 0.02, 0.01));
-/// The distance for other fluid of a summed density, which is relaxed: nearer particles can end inside of an edge. Without those
-/// closer than half a spacing a bucket of water lost a seventh of it.
+/// The distance for other fluid of a summed density, which is relaxed: nearer particles can end inside of an edge. Without
+/// those closer than half a spacing a bucket of water lost a seventh of it.
 const NEAREST: f32 = 0.05;
 /// Smallest width, in spacings, of a gap between bodies or between a body and a wall that holds fluid.
 const NARROWEST: f32 = 0.95;
@@ -128,11 +128,11 @@ pub enum SampleError {
     },
     /// The fluid cannot rest.
     #[error(
-        "the fluid starts {ratio:.1} times as dense as at rest: set fluid.particle_spacing to the distance of its particles, \
-         correct the scale of its files, or leave particles out"
+        "the fluid starts on average {ratio:.1} times as dense as at rest: set fluid.particle_spacing to the distance of its \
+         particles, correct the scale of its files, or leave particles out"
     )]
     Overfull {
-        /// The mean density over that at rest.
+        /// The mean density over that at rest, or the mean number of particles in a cube of one spacing.
         ratio: f32,
     },
     /// A particle of a block lies outside the domain.

@@ -1,8 +1,9 @@
 //! Bodies that rest on solids under water, and the load of the water on them.
 
 use glam::Vec3;
-use splashdown::Simulation;
+use splashdown::monitor::Level;
 use splashdown::scene::{Motion, Scene};
+use splashdown::{Device, Event, Run, RunOptions, Simulation};
 use splashdown_gpu::{CpuExecutor, Executor, GpuExecutor, testing};
 
 use crate::{body, free, tank};
@@ -47,8 +48,7 @@ fn a_body_on_the_floor_carries_the_water_above_it() {
         let (force, corrections) = load(&pool(size, 0.0, density), CpuExecutor::new().into(), 0.6);
         let weight = weight_above(size);
         eprintln!("{density} kg/m^3: {force} N, weight {weight} N, {corrections} corrections");
-        // The surface on which the water acts is a little wider than the box: at six spacings the force on a fixed one is 15 %
-        // too large.
+        // The surface on which the water acts is a little wider than the box.
         assert!((force / weight + 1.0).abs() < 0.1, "{density}: {force} of {weight} N");
         assert_eq!(corrections, 0, "{density}");
     }
@@ -90,4 +90,65 @@ fn supports_agree_on_both_executors() {
     eprintln!("{one} N, {two} N");
     assert!((one / two - 1.0).abs() < 0.02 && corrections == 0, "{one} {two} N, {corrections} corrections");
     assert!((two / weight_above(size) + 1.0).abs() < 0.1, "{two} N");
+}
+
+/// Its work was that of a body that falls and is put back in every step: a tenth of the energy of this water in a second.
+#[test]
+fn a_body_that_rests_does_no_work() {
+    let mut scene = pool(Vec3::new(0.3, 0.06, 0.3), 0.0, 1200.0);
+    scene.duration = 0.6;
+    let run = Run::new(&scene, RunOptions::new(&scene).with_device(Device::Cpu)).unwrap();
+    let mut last = None;
+    for event in run {
+        match event.unwrap() {
+            Event::Frame(frame) => last = Some(frame),
+            Event::Alarm(alarm) => panic!("{alarm:?}"),
+            _ => {}
+        }
+    }
+    let frame = last.expect("frames");
+    let energy = frame.energy;
+    eprintln!("{energy:?}");
+    assert!(energy.bodies.abs() < 0.01 * energy.available, "{energy:?}");
+    assert!(frame.level < Level::Warning, "{:?}", frame.level);
+    // At rest, whatever the collisions take from its motion.
+    assert!(frame.stats.max_speed < 0.2, "{}", frame.stats.max_speed);
+}
+
+/// The upper box has the other as its support, which moves. The boxes creep and let single particles in, which the monitor
+/// reports, but the water does not burst: it did after 0.25 s, with 60 particles inside and one in a hundred 152 % too dense.
+#[test]
+fn light_boxes_on_top_of_one_another_do_not_burst_the_water() {
+    let size = Vec3::new(0.24, 0.09, 0.24);
+    let mut scene = pool(size, 0.0, 200.0);
+    let mut upper = scene.bodies[0].clone();
+    (upper.name, upper.mesh.position.y) = ("upper".into(), 1.5 * size.y);
+    scene.bodies.push(upper);
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    let stats = simulation.advance(0.8).unwrap();
+    let state = simulation.body_states().unwrap()[1];
+    let particles = simulation.particles().unwrap();
+    eprintln!("{state:?} {stats:?}");
+    assert!(stats.density_error < 0.1, "{stats:?}");
+    assert!(simulation.inside_bodies(&particles).unwrap() < 6);
+    let place = scene.bodies[1].mesh.position;
+    assert!(state.position.distance(place) < SPACING, "{state:?}");
+}
+
+#[test]
+fn a_resumed_run_knows_what_supports_its_bodies() {
+    let text = "[scene]\nname = \"plate\"\nduration = 1.0\n[domain]\nmin = [0, 0, 0]\nmax = [0.6, 0.5, 0.6]\n\
+                [fluid]\nparticle_spacing = 0.03\n[[fluid.block]]\nposition = [0, 0, 0]\nsize = [0.6, 0.36, 0.6]\n\
+                [[body]]\nname = \"plate\"\nmesh = \"cube\"\nscale = [0.3, 0.06, 0.3]\nposition = [0.3, 0.03, 0.3]\n\
+                motion = \"dynamic\"\ndensity = 300\n";
+    let scene = Scene::parse(text, "plate").unwrap_or_else(|errors| panic!("{errors}"));
+    let mut first = Simulation::new(&scene, &Device::Cpu).unwrap();
+    first.advance(0.05).unwrap();
+    let saved = first.checkpoint(text).unwrap();
+    let mut second = Simulation::resume(&saved, CpuExecutor::new().into()).unwrap();
+    let [one, two] = [&mut first, &mut second].map(|simulation| {
+        simulation.advance(0.03).unwrap();
+        simulation.particles().unwrap().positions
+    });
+    assert_eq!(one, two);
 }

@@ -325,6 +325,25 @@ fn a_rotation_is_resolved_or_refused() {
 }
 
 #[test]
+fn velocities_that_a_hinge_does_not_allow_are_reported() {
+    let warned = |keys: &str| {
+        let text = with_body(&format!(
+            "{PLAIN}\nmotion = \"dynamic\"\nposition = [0.7, 0.6, 0.5]\nscale = 0.2\n{keys}"
+        ));
+        let scene = parse(&text).unwrap_or_else(|errors| panic!("{errors}"));
+        scene.warnings.iter().map(|warning| format!("{warning}\n")).collect::<String>()
+    };
+    let both = warned("hinge = [0, 0, 2]\nvelocity = [0, 2, 0]\nangular_velocity = [3, 0, 1]");
+    assert!(both.contains("velocity has no effect: the body has a hinge"), "{both}");
+    assert!(both.contains("starts with 1.000 rad/s about it"), "{both}");
+    // Controls: about the hinge, and without one.
+    let about = warned("hinge = [0, 0, 2]\nangular_velocity = [0, 0, -1]");
+    assert!(!about.contains("hinge"), "{about}");
+    let free = warned("velocity = [0, 2, 0]\nangular_velocity = [3, 0, 1]");
+    assert!(!free.contains("hinge"), "{free}");
+}
+
+#[test]
 fn the_contact_of_solids_motors_and_scales_per_axis_are_read() {
     let full = body(&format!(
         "{PLAIN}\nmotion = \"dynamic\"\nscale = [1, \"cm\", 0.5]\ncontact_friction = 0.7\nrestitution = 0.9\n\

@@ -82,11 +82,7 @@ impl Drawing {
             Ok(frame) => {
                 self.problems.drawn_without(number, frame.problems());
                 if self.is_slowed && !frame.moves() {
-                    self.problems.extend([
-                        "the files of the run have no velocities of the liquid, which therefore stands still between frames: \
-                         write particles as PLY, VTU, VTK, BGEO or NPZ"
-                            .to_owned(),
-                    ]);
+                    self.problems.still(number);
                 }
                 Some(frame)
             }

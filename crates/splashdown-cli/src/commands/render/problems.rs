@@ -1,5 +1,7 @@
 //! What was left out of a film and why, reported once at its end.
 
+use std::collections::BTreeSet;
+
 use splashdown_run::RunError;
 
 use crate::console;
@@ -12,6 +14,8 @@ const LISTED: usize = 12;
 #[derive(Debug, Default)]
 pub struct Problems {
     texts: Vec<String>,
+    /// Frames in slow motion whose liquid has no velocities.
+    still: BTreeSet<u32>,
     first: Option<Failure>,
 }
 
@@ -38,8 +42,29 @@ impl Problems {
         );
     }
 
+    /// A frame in slow motion whose liquid has no velocities.
+    pub fn still(&mut self, frame: u32) {
+        self.still.insert(frame);
+    }
+
+    /// The message about frames whose liquid has no velocities.
+    fn standing(&self) -> Option<String> {
+        let (first, last) = (self.still.first()?, self.still.last()?);
+        let (frames, pronoun) = match self.still.len() {
+            1 => (format!("frame {first} has"), "it"),
+            count => (format!("{count} frames from {first} to {last} have"), "each"),
+        };
+        Some(format!(
+            "{frames} no velocities of the liquid, which stands still after {pronoun} until the next frame: write surfaces as PLY, \
+             or particles as PLY, VTU, VTK, BGEO or NPZ"
+        ))
+    }
+
     /// Prints the problems.
     pub fn report(&self) {
+        if let Some(text) = self.standing() {
+            console::note(format!("warning: {text}"));
+        }
         for text in self.texts.iter().take(LISTED) {
             console::note(format!("warning: {text}"));
         }
@@ -57,6 +82,21 @@ impl Problems {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn frames_without_velocities_are_named() {
+        let mut problems = Problems::default();
+        assert_eq!(problems.standing(), None);
+        problems.still(7);
+        assert!(problems.standing().is_some_and(|text| text.starts_with("frame 7 has no velocities")));
+        problems.still(9);
+        problems.still(9);
+        assert!(
+            problems
+                .standing()
+                .is_some_and(|text| text.starts_with("2 frames from 7 to 9 have no velocities"))
+        );
+    }
 
     #[test]
     fn a_problem_is_listed_once() {

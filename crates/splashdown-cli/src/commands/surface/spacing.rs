@@ -97,7 +97,7 @@ fn separate(particles: &Particles, path: &Path) -> Result<(), Failure> {
     Err(Failure::new(
         Exit::Scene,
         format!(
-            "most particles of `{}` are at the same place as others: write the file again, or --force to use it",
+            "most particles of `{}` are at the same place as others: write the file again, or give --particle-spacing and --force to use it",
             path.display()
         ),
     ))

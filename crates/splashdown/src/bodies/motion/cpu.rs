@@ -2,16 +2,16 @@ use glam::{Quat, Vec3, Vec4};
 
 use super::MotionBindings;
 use crate::bodies::reaction;
-use crate::bodies::types::{Body, SCRIPT_SAMPLES, SUM_WORDS, ScriptSample};
+use crate::bodies::types::{Body, SCRIPT_SAMPLES, SUM_WORDS, SUPPORTS, ScriptSample};
 use crate::state::{Params, StepCounters, StepState};
 
 pub(super) fn motion(buffers: MotionBindings<'_>) {
-    let MotionBindings { params, state, scripts, bodies, sums, counters } = buffers;
+    let MotionBindings { params, state, scripts, supports, bodies, sums, counters } = buffers;
     if state.run_count == 0 {
         return;
     }
-    let sums = sums.chunks_exact_mut(SUM_WORDS);
-    for (body, sums) in bodies.iter_mut().zip(sums) {
+    let each = sums.chunks_exact_mut(SUM_WORDS).zip(supports.chunks_exact(SUPPORTS));
+    for (body, (sums, supports)) in bodies.iter_mut().zip(each) {
         [body.force, body.torque] = reaction::force_and_torque(params, sums);
         sums.fill(0);
         let (velocity, spin) = (body.velocity, body.angular_velocity);
@@ -24,7 +24,11 @@ pub(super) fn motion(buffers: MotionBindings<'_>) {
         // dynamic body the change of its kinetic energy.
         let power = body.force.dot(velocity + body.velocity) + body.torque.dot(spin + body.angular_velocity);
         body.work -= 0.5 * state.dt * power;
-        let speed = body.velocity.length() + body.reach * body.angular_velocity.length();
+        // The collisions hold a body with supports.
+        let is_held = supports[0].normal != Vec3::ZERO;
+        let [velocity, spin] =
+            if is_held { [velocity, spin] } else { [body.velocity, body.angular_velocity] };
+        let speed = velocity.length() + body.reach * spin.length();
         let word = &mut counters[StepCounters::MAX_SPEED];
         *word = (*word).max(speed.to_bits());
     }

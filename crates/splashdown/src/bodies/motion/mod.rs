@@ -15,7 +15,7 @@ pub(super) use cpu::next_velocities;
 
 use splashdown_gpu::{PassDesc, WgslModule, bindings};
 
-use super::types::{self, Body, ScriptSample};
+use super::types::{self, Body, ScriptSample, Support};
 use crate::state::{PARAMS, Params, STATE, STEP_COUNTERS, StepState};
 
 /// Sums, matrices and velocities of bodies.
@@ -31,6 +31,7 @@ bindings! {
         params: uniform Params,
         state: read StepState,
         scripts: read [ScriptSample],
+        supports: read [Support],
         bodies: write [Body],
         sums: write [u32],
         counters: atomic [u32],

@@ -65,6 +65,9 @@ fn motion(@builtin(global_invocation_id) gid: vec3<u32>) {
     let power = dot(bodies[b].force, velocity + bodies[b].velocity)
         + dot(bodies[b].torque, spin + bodies[b].angular_velocity);
     bodies[b].work -= 0.5 * state.dt * power;
-    let speed = length(bodies[b].velocity) + bodies[b].reach * length(bodies[b].angular_velocity);
+    // The collisions hold a body with supports.
+    let is_held = any(supports[SUPPORTS * b].normal != vec3(0.0));
+    let speed = length(select(bodies[b].velocity, velocity, is_held))
+        + bodies[b].reach * length(select(bodies[b].angular_velocity, spin, is_held));
     atomicMax(&counters[COUNTER_MAX_SPEED], bitcast<u32>(speed));
 }

@@ -1,8 +1,8 @@
 use super::PressureResponseBindings;
 use crate::bodies::motion::next_velocities;
 use crate::bodies::reaction::force_and_torque;
-use crate::bodies::support::{SUPPORTS, supported};
-use crate::bodies::types::{Body, SUM_WORDS};
+use crate::bodies::support::supported;
+use crate::bodies::types::{Body, SUM_WORDS, SUPPORTS};
 
 pub(super) fn pressure_response(buffers: PressureResponseBindings<'_>) {
     let PressureResponseBindings { params, state, solve, bodies, sums, pressure_sums, responses, supports } =

@@ -67,12 +67,13 @@ fn read_body(section: &Section<'_>, duration: f32) -> Part<Body> {
     let motion = read_motion(section, script);
     let vector = |v: Option<[f32; 3]>| v.map_or(Vec3::ZERO, Vec3::from);
     let motion = match motion? {
-        Motion::Dynamic { density: default, .. } => Motion::Dynamic {
-            density: density?.unwrap_or(default),
-            velocity: vector(velocity?),
-            angular_velocity: vector(angular_velocity?),
-            hinge: hinge?,
-        },
+        Motion::Dynamic { density: default, .. } => {
+            let (velocity, angular_velocity, hinge) = (vector(velocity?), vector(angular_velocity?), hinge?);
+            if let Some(hinge) = &hinge {
+                warn_of_hinge(section, hinge, velocity, angular_velocity);
+            }
+            Motion::Dynamic { density: density?.unwrap_or(default), velocity, angular_velocity, hinge }
+        }
         other => other,
     };
     Ok(Body {
@@ -87,6 +88,23 @@ fn read_body(section: &Section<'_>, duration: f32) -> Part<Body> {
         shell: shell?,
         colour: colour?,
     })
+}
+
+/// Warns of velocities that a hinge does not allow.
+fn warn_of_hinge(section: &Section<'_>, hinge: &Hinge, velocity: Vec3, angular_velocity: Vec3) {
+    if velocity != Vec3::ZERO {
+        let message = format!("{} has no effect: the body has a hinge", section.key_path("velocity"));
+        section.warn("velocity", message, "a hinged body only turns: give angular_velocity");
+    }
+    let about = angular_velocity.dot(hinge.axis.normalize_or_zero());
+    let across = (angular_velocity.length_squared() - about * about).max(0.0).sqrt();
+    if across > 1e-3 * angular_velocity.length() {
+        let message = format!(
+            "{} is not parallel to the hinge: the body starts with {about:.3} rad/s about it",
+            section.key_path("angular_velocity")
+        );
+        section.warn("angular_velocity", message, "give a multiple of the axis in hinge");
+    }
 }
 
 /// The keys `contact_friction` and `restitution`.
