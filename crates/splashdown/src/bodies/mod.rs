@@ -188,7 +188,7 @@ pub struct Bodies {
     pub pressure_sums: Buffer<u32>,
     /// The velocity and the angular velocity of each body by the present implicit pressure, two vectors per body.
     pub responses: Buffer<Vec4>,
-    /// The contacts that support the bodies, [`SUPPORTS`] per body.
+    /// The contacts that support the bodies, eight per body.
     pub supports: Buffer<Support>,
     /// The unknowns of the implicit viscosity, ten vectors per body.
     pub unknowns: Buffer<Vec4>,
