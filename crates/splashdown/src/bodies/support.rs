@@ -12,7 +12,9 @@
 use glam::Vec3;
 use splashdown_gpu::WgslModule;
 
-use super::types::{Body, SUPPORTS, Support};
+#[cfg(feature = "rigid")]
+use super::types::SUPPORTS;
+use super::types::{Body, Support};
 
 /// The WGSL side.
 pub(super) const WGSL: WgslModule = WgslModule { name: "sph/support", source: include_str!("support.wgsl") };
