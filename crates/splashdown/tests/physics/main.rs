@@ -39,6 +39,7 @@ mod stretching;
 mod submerged;
 mod tilted;
 mod torricelli;
+mod utube;
 mod viscosity;
 mod volume;
 mod vortex;
@@ -79,6 +80,7 @@ const CASES: &[&[&cases::Case]] = &[
     submerged::CASES,
     tilted::CASES,
     torricelli::CASES,
+    utube::CASES,
     viscosity::CASES,
     volume::CASES,
     vortex::CASES,
