@@ -102,7 +102,7 @@ fn water_swings_in_a_u_tube() {
         let after = difference.iter().filter(|p| (last..last + 0.5 * period(LENGTH)).contains(&p.0));
         let height = after.map(|p| p.1.abs()).fold(0.0, f64::max);
         let start = f64::from(LEVELS[0] - LEVELS[1]);
-        figures.measure("loss of height per half period", 1.0 - (height / start).powf(1.0 / turns as f64));
+        figures.report("loss of height per half period", 1.0 - (height / start).powf(1.0 / turns as f64));
         figures.plot("Difference of the levels", ["time, s", "m"], &Series::new(), &difference);
     });
 }
