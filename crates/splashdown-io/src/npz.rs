@@ -43,10 +43,7 @@ pub(crate) fn write_particles(path: &Path, particles: &Particles) -> Result<u64,
     let others = particles.other_attributes().zip(&names).map(|(attribute, name)| {
         (name.as_str(), "<f4", attribute.components, bytemuck::cast_slice(&attribute.values))
     });
-    // Without particles an empty array does not mean that the quantity is unknown.
-    let fields = fields
-        .into_iter()
-        .filter(|(name, _, _, data)| count == 0 || !data.is_empty() || *name == "positions");
+    let fields = fields.into_iter().filter(|(_, _, _, data)| particles.has(data.len()));
     let arrays: Vec<_> = fields.chain(others).collect();
     // An attribute of the same name would be the same file of the archive.
     let is_free = |name: &str| names.iter().all(|other| other != name);

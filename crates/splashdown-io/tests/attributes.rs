@@ -78,6 +78,23 @@ fn attributes_without_a_field_are_written_and_read_back() {
     }
 }
 
+/// A series of foam begins with frames without particles.
+#[test]
+fn files_without_particles_have_the_attributes_of_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let attribute = |name: &str| Attribute { name: name.to_owned(), components: 1, values: Vec::new() };
+    let with = Particles::default().with_attributes(vec![attribute("lifetime")]);
+    for ending in ENDINGS {
+        let contains_name = |particles: &Particles| {
+            let path = folder.path().join(format!("empty.{ending}"));
+            write_particles(&path, particles).unwrap();
+            fs::read(path).unwrap().windows(8).any(|bytes| bytes == b"lifetime")
+        };
+        assert!(contains_name(&with), "{ending}");
+        assert!(!contains_name(&Particles::default()), "{ending}");
+    }
+}
+
 #[test]
 fn attributes_of_any_name_and_type_are_read() {
     let folder = tempfile::tempdir().unwrap();

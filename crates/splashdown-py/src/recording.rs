@@ -23,8 +23,9 @@ use crate::surface::parse_device;
 /// or an empty list. `on_burst` is "stop" (the default: `SimulationError`, and a checkpoint of the last sound frame), "warn"
 /// or "ignore".
 /// `None` selects the values of the scene. Returns a dictionary with `folder`, `frames` (complete ones, with the initial
-/// one), `files`, and, unless the run was stopped, `steps`, `wall` (s) and `density_error`. Ctrl-C completes the current
-/// frame, writes a checkpoint and raises `KeyboardInterrupt`.
+/// one), `files`, and, unless the run was stopped, `steps`, `wall` (s), `density_error` and its two sides
+/// `density_excess` and `density_deficit`. Ctrl-C completes the current frame, writes a checkpoint and raises
+/// `KeyboardInterrupt`.
 ///
 /// >>> result = splashdown.run(scene, folder / "out", frames=1, formats=["ply"], pictures=[], device="cpu")
 /// >>> result["frames"], (folder / "out/mesh/surface_0001.ply").exists()
@@ -89,6 +90,8 @@ pub fn run<'py>(
             result.set_item("steps", summary.steps)?;
             result.set_item("wall", summary.wall)?;
             result.set_item("density_error", summary.density_error())?;
+            result.set_item("density_excess", summary.density_excess)?;
+            result.set_item("density_deficit", summary.density_deficit)?;
         }
         _ => {}
     }

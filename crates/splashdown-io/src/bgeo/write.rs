@@ -37,7 +37,7 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
         attribute("pressure", 0, 1, bytemuck::cast_slice(&particles.pressures)),
         attribute("id", 1, 1, bytemuck::cast_slice(&particles.ids)),
     ];
-    attributes.retain(|attribute| !attribute.words.is_empty());
+    attributes.retain(|attribute| particles.has(attribute.words.len()));
     attributes.extend(particles.other_attributes().map(|attribute| Attribute {
         name: Cow::Owned(attribute.word().chars().take(LONGEST_NAME).collect()),
         kind: if attribute.components == 3 { 5 } else { 0 },

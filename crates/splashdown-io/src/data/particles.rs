@@ -72,11 +72,17 @@ impl Particles {
         Self { info, ..self }
     }
 
+    /// Whether files store an attribute with this many values. Without particles an empty array does not mean that the
+    /// attribute is unknown, and a series of files has the same arrays in all.
+    pub(crate) fn has(&self, values: usize) -> bool {
+        self.is_empty() || values > 0
+    }
+
     /// The attributes without a field, which files store under their names.
     pub(crate) fn other_attributes(&self) -> impl Iterator<Item = &Attribute> {
-        self.attributes.iter().filter(|attribute| {
-            !attribute.values.is_empty() && Column::named(&attribute.name, attribute.components).is_none()
-        })
+        let has_field =
+            |attribute: &Attribute| Column::named(&attribute.name, attribute.components).is_some();
+        self.attributes.iter().filter(move |attribute| !has_field(attribute))
     }
 
     /// Number of particles.

@@ -21,7 +21,7 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
         (bytes(&particles.pressures), 4, "float pressure"),
         (bytes(&particles.ids), 4, "uint id"),
     ];
-    columns.extend(optional.into_iter().filter(|column| !column.0.is_empty()));
+    columns.extend(optional.into_iter().filter(|column| particles.has(column.0.len())));
     let names: Vec<String> = particles.other_attributes().map(properties).collect();
     columns.extend(attribute_columns(particles.other_attributes(), &names));
 

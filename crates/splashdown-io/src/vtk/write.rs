@@ -29,10 +29,18 @@ pub fn write_particles_to(out: &mut dyn Write, particles: &Particles) -> io::Res
     writeln!(out, "CELL_TYPES {count}")?;
     words(out, std::iter::repeat_n(VTK_VERTEX, count))?;
     writeln!(out, "POINT_DATA {count}")?;
-    vectors(out, "VECTORS velocity", &particles.velocities)?;
-    scalars(out, "density float", bytemuck::cast_slice(&particles.densities))?;
-    scalars(out, "pressure float", bytemuck::cast_slice(&particles.pressures))?;
-    scalars(out, "id unsigned_int", &particles.ids)?;
+    if particles.has(particles.velocities.len()) {
+        vectors(out, "VECTORS velocity", &particles.velocities)?;
+    }
+    for (what, values) in [
+        ("density float", bytemuck::cast_slice(&particles.densities)),
+        ("pressure float", bytemuck::cast_slice(&particles.pressures)),
+        ("id unsigned_int", &particles.ids[..]),
+    ] {
+        if particles.has(values.len()) {
+            scalars(out, what, values)?;
+        }
+    }
     particles.other_attributes().try_for_each(|attribute| array(out, attribute))
 }
 
@@ -47,8 +55,11 @@ pub fn write_mesh_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     points(out, &mesh.vertices)?;
     cells(out, "POLYGONS", mesh.len(), 3, mesh.triangles.iter().flat_map(|&[a, b, c]| [3, a, b, c]))?;
     writeln!(out, "POINT_DATA {}", mesh.vertices.len())?;
-    vectors(out, "NORMALS normals", &mesh.normals)?;
-    vectors(out, "VECTORS velocity", &mesh.velocities)?;
+    for (what, values) in [("NORMALS normals", &mesh.normals), ("VECTORS velocity", &mesh.velocities)] {
+        if !values.is_empty() {
+            vectors(out, what, values)?;
+        }
+    }
     mesh.attributes.iter().try_for_each(|attribute| array(out, attribute))
 }
 
@@ -100,17 +111,11 @@ fn array(out: &mut dyn Write, attribute: &Attribute) -> io::Result<()> {
 }
 
 fn vectors(out: &mut dyn Write, what: &str, values: &[[f32; 3]]) -> io::Result<()> {
-    if values.is_empty() {
-        return Ok(());
-    }
     writeln!(out, "{what} float")?;
     words(out, bytemuck::cast_slice::<_, u32>(values).iter().copied())
 }
 
 fn scalars(out: &mut dyn Write, what: &str, values: &[u32]) -> io::Result<()> {
-    if values.is_empty() {
-        return Ok(());
-    }
     writeln!(out, "SCALARS {what} 1\nLOOKUP_TABLE default")?;
     words(out, values.iter().copied())
 }

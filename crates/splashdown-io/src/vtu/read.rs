@@ -19,7 +19,9 @@ pub(crate) fn read(path: &Path, wanted: Wanted) -> Result<Particles, IoError> {
         }
         Ok(particles)
     });
-    let particles = particles.map_err(|reason| IoError::malformed(path, "VTU", reason))?;
+    let is_poly_data = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vtp"));
+    let format = if is_poly_data { "VTP" } else { "VTU" };
+    let particles = particles.map_err(|reason| IoError::malformed(path, format, reason))?;
     match particles.len() {
         given if given > MAX_COUNT => Err(IoError::TooMany { what: "particles", given, limit: MAX_COUNT }),
         _ => Ok(particles),

@@ -100,7 +100,11 @@ fn write_particles(
         cells,
         active: "",
         field: &field,
-        point_data: &known.into_iter().filter(|array| array.bytes() > 0).chain(others).collect::<Vec<_>>(),
+        point_data: &known
+            .into_iter()
+            .filter(|array| particles.has(array.bytes() as usize))
+            .chain(others)
+            .collect::<Vec<_>>(),
         points: Array::of("Points", "Float32", 3, &particles.positions),
         arrays,
     }
