@@ -34,6 +34,9 @@ use crate::scene::Domain;
 const WALL_FRICTION: f32 = 1e3;
 /// The coefficient of restitution of the domain's sides, chosen likewise.
 const WALL_RESTITUTION: f32 = 1.0;
+/// The natural frequency of contacts in Hz; rapier's is 30, and 60 at what does not move. A contact yields under its load
+/// like a spring, so that light boxes under water sank into one another, and a dry stack crept.
+const STIFFNESS: f32 = 1000.0;
 /// The ratio of volumes above which a convex hull does not represent a body, because the body has a cavity.
 const HOLLOW: f32 = 1.1;
 
@@ -64,6 +67,8 @@ impl Rigid {
         world.gravity = Vector::ZERO;
         let smallest = states.iter().filter(|body| body.kind == Body::DYNAMIC).map(|body| body.reach);
         world.integration_parameters.length_unit = smallest.fold(f32::INFINITY, f32::min).max(1e-6);
+        world.integration_parameters.contact_softness.natural_frequency = STIFFNESS;
+        world.integration_parameters.static_contact_softness.natural_frequency = STIFFNESS;
         // With the default of 4, 1 and 1 a box at rest crept over a level floor at 3 mm/s, in the order in which its corners
         // are solved.
         world.integration_parameters.num_solver_iterations = 8;

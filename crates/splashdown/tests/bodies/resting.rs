@@ -115,10 +115,10 @@ fn a_body_that_rests_does_no_work() {
     assert!(frame.stats.max_speed < 0.2, "{}", frame.stats.max_speed);
 }
 
-/// The upper box has the other as its support, which moves. The boxes creep and let single particles in, which the monitor
-/// reports, but the water does not burst: it did after 0.25 s, with 60 particles inside and one in a hundred 152 % too dense.
+/// The upper box has the other as its support, which moves. With soft contacts it crept by 2 cm and sank into the other one.
+/// Single particles enter at the seam, which the monitor reports. Without supports the water burst after 0.25 s, with one particle in a hundred 152 % too dense.
 #[test]
-fn light_boxes_on_top_of_one_another_do_not_burst_the_water() {
+fn light_boxes_on_top_of_one_another_stay_under_water() {
     let size = Vec3::new(0.24, 0.09, 0.24);
     let mut scene = pool(size, 0.0, 200.0);
     let mut upper = scene.bodies[0].clone();
@@ -131,8 +131,31 @@ fn light_boxes_on_top_of_one_another_do_not_burst_the_water() {
     eprintln!("{state:?} {stats:?}");
     assert!(stats.density_error < 0.1, "{stats:?}");
     assert!(simulation.inside_bodies(&particles).unwrap() < 6);
-    let place = scene.bodies[1].mesh.position;
-    assert!(state.position.distance(place) < SPACING, "{state:?}");
+    let moved = state.position - scene.bodies[1].mesh.position;
+    assert!(moved.length() < 0.15 * SPACING && moved.y.abs() < 5e-4, "{moved}");
+}
+
+/// With soft contacts the middle box crept by 8 mm.
+#[test]
+fn a_dry_stack_stays() {
+    let mut scene = tank(SPACING, [0.6, 0.8, 0.6], 0.06);
+    scene.gravity = Vec3::new(0.0, -9.81, 0.0);
+    let size = 0.2;
+    for (name, level) in [("low", 0.5), ("middle", 1.5), ("high", 2.5)] {
+        let density = if name == "high" { 500.0 } else { 2000.0 };
+        scene.bodies.push(body(name, "cube", size, Vec3::new(0.3, 0.06 + level * size, 0.3), free(density)));
+    }
+    let mut shelf = body("shelf", "cube", 1.0, Vec3::new(0.3, 0.03, 0.3), Motion::Static);
+    shelf.mesh.scale = Vec3::new(0.3, 0.06, 0.3);
+    scene.bodies.push(shelf);
+    let mut simulation = Simulation::new(&scene, &Device::Cpu).unwrap();
+    simulation.advance(2.0).unwrap();
+    let states = simulation.body_states().unwrap();
+    for (state, body) in states.iter().zip(&scene.bodies) {
+        let moved = state.position.distance(body.mesh.position);
+        eprintln!("{}: {moved} m", body.name);
+        assert!(moved < 2e-3, "{}: {moved} m", body.name);
+    }
 }
 
 #[test]
