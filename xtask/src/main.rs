@@ -41,8 +41,8 @@ Usage: cargo xtask <COMMAND> [OPTIONS]
   demo [ARGUMENTS]  install missing requirements, build, and run the dam break into out/dam-break;
                     ARGUMENTS are passed to `splashdown run` (for example --frames 20)
   test [--fast|--all] [--only LAYER]
-                    check format, lints, tests, documentation, the web page and other systems (--fast: the first
-                    three only; CI=true: also Blender, the optimized page, the command line without features and the
+                    check format, lints, tests, random scenes, shaders, documentation, the web page and other systems
+                    (--fast: up to the shaders; CI=true: also Blender, the optimized page, the command line without features and the
                     Python package; --all: also all code for other systems, and the public API even if its tool has
                     to be installed; --only: the layers with this text in their name, for example `--only page`)
   bench [--quick]   run the benchmarks and write docs/bench.md (--quick: small sizes, writes no file)

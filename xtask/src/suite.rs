@@ -20,7 +20,7 @@ const PYTHON_PACKAGE: &str = "splashdown-py";
 /// The extent of a test run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Extent {
-    /// Format, lints and tests.
+    /// Format, lints, tests, random scenes and shaders.
     Fast,
     /// Also documentation, the web page and other systems, with quick builds.
     Usual,

@@ -1,4 +1,5 @@
-//! Files that are complete or absent: a file is written under a temporary name in the same folder and then renamed.
+//! Files that are complete or absent: a file gets its name when it is complete. Until then it has none (Linux) or a temporary
+//! one in the same folder.
 //!
 //! A program that watches the folder (ParaView reloading a series, a script) never reads an incomplete frame, and a run
 //! that is killed or fills the disk leaves all earlier frames intact. The data and the folder are flushed to the disk

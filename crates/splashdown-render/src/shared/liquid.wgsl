@@ -132,8 +132,10 @@ fn exit_normal(pixel: vec2f, world: vec3f, normal: vec3f, direction: vec3f, path
 // Mean light of bubbles over that of white foam; see foam.wgsl.
 const BUBBLES = 0.9;
 
-// How often the end of a ray is corrected with the distance of the body that it may meet.
-const CORRECTIONS = 3;
+// Parts into which a ray in the liquid is divided to find the body that it meets first, and how often the part in which it
+// does is halved.
+const PARTS = 12;
+const HALVINGS = 5;
 
 // A place on a ray, its distance along it in m, and whether the picture behind the liquid shows it.
 struct Place {
@@ -150,26 +152,35 @@ fn box_exit(origin: vec3f, direction: vec3f) -> f32 {
     return min(min(distances.x, distances.y), distances.z);
 }
 
-// Where a ray in the liquid ends, if the view ray is `path` m long and ends at a body, at the bottom or at a wall. The ray
-// may meet a body that the view ray misses, and the other way round.
-fn end_in_liquid(world: vec3f, direction: vec3f, path: f32) -> Place {
+// How far a place is behind the nearest body that the picture shows there.
+fn behind_body(place: vec3f) -> f32 {
+    return relative_to_middle(place) - body_towards(place);
+}
+
+// Where a ray in the liquid ends: at the first body that it meets, or where it leaves the box.
+fn end_in_liquid(world: vec3f, direction: vec3f) -> Place {
     let slack = NEAR_END_IN_BOX * length(globals.box_max - globals.box_min);
     let end = box_exit(world, direction);
-    var travelled = path;
-    for (var turn = 0; turn < CORRECTIONS; turn++) {
-        let place = world + direction * travelled;
-        // How far the place is behind the body that the picture shows there.
-        let behind = relative_to_middle(place) - body_towards(place);
-        if abs(behind) < slack {
-            return Place(place, travelled, true);
+    var before = 0.0;
+    for (var part = 1; part <= PARTS; part++) {
+        var after = end * f32(part) / f32(PARTS);
+        if behind_body(world + direction * after) > 0.0 {
+            for (var turn = 0; turn < HALVINGS; turn++) {
+                let middle = 0.5 * (before + after);
+                let is_behind = behind_body(world + direction * middle) > 0.0;
+                after = select(after, middle, is_behind);
+                before = select(middle, before, is_behind);
+            }
+            let place = world + direction * after;
+            // Otherwise the ray passes behind the body.
+            if behind_body(place) < slack {
+                return Place(place, after, true);
+            }
         }
-        travelled -= behind;
-        if travelled < 0.0 || travelled > end {
-            break;
-        }
+        before = end * f32(part) / f32(PARTS);
     }
     let place = world + direction * end;
-    return Place(place, end, relative_to_middle(place) - body_towards(place) < slack);
+    return Place(place, end, behind_body(place) < slack);
 }
 
 // The light that a ray brings from where it leaves the liquid, and its length in the liquid in m. The light is that of the
@@ -180,7 +191,7 @@ fn light_behind(pixel: vec2f, world: vec3f, normal: vec3f, leaving: Leaving) -> 
     var direction = leaving.direction;
     var is_known = leaving.end == IN_PICTURE;
     if is_known && globals.exit_reach > 0.0 {
-        let end = end_in_liquid(world, direction, leaving.path);
+        let end = end_in_liquid(world, direction);
         // The floor is known without the picture too.
         place = select(world, end.world, end.is_shown);
         is_known = end.is_shown;
