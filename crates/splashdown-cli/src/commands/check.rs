@@ -169,7 +169,10 @@ fn describe(
         ("suited to", suited_to(&scene.solver).to_owned()),
         (
             "speed",
-            format!("at most about {} m/s expected", human::three_digits(derived.reference_speed.into())),
+            format!(
+                "about {} m/s expected, more in the jets of impacts",
+                human::three_digits(derived.reference_speed.into())
+            ),
         ),
         ("sound", format!("{} m/s", human::three_digits(derived.sound_speed.into()))),
         ("time step", format!("about {:.3e} s, limited by {}", derived.dt_estimate, derived.dt_limit)),

@@ -84,6 +84,13 @@ fn check_surface_tension(scene: &Scene, fluid: &Section<'_>, solver: &Section<'_
         solver.warn("surface_tension", message, hint);
         check_capillary_length(scene, solver, derived);
     }
+    let is_summed = scene.solver.method == Method::Wcsph && scene.solver.density == DensityMode::Summation;
+    if scene.solver.surface_tension == SurfaceTension::Csf && is_summed {
+        let message = "with the summed density of wcsph, surface_tension = \"csf\" draws particles together in pairs: a drop \
+                       becomes about 15 % too dense"
+            .to_owned();
+        solver.warn("surface_tension", message, "set accuracy = \"engineering\", or method = \"dfsph\"");
+    }
     if scene.solver.surface_tension == SurfaceTension::Csf && !scene.bodies.is_empty() {
         let message =
             "with surface_tension = \"csf\" bodies are not wetted: the contact angle is 180 degrees"

@@ -194,6 +194,10 @@ fn tension_with_a_pressure_that_is_not_negative_gives_a_warning() {
     for (method, model) in [("accuracy = \"engineering\"", "csf"), ("method = \"dfsph\"", "akinci2013")] {
         assert!(!warnings(method, model).contains("never negative"), "{method}, {model}");
     }
+    // Particles of the explicit form pair.
+    let pairs = |method: &str, model: &str| warnings(method, model).contains("in pairs");
+    assert!(pairs("method = \"wcsph\"", "csf"));
+    assert!(!pairs("accuracy = \"engineering\"", "csf") && !pairs("method = \"wcsph\"", "akinci2013"));
 }
 
 #[test]

@@ -63,7 +63,7 @@ fn errors_in_probes_are_reported() {
                 "{}[[probe]]\nname = \"A\"\nquantity = \"height\"\nposition = [0, 0, 0]\n",
                 probe("quantity = \"height\"\nposition = [0, 0, 0]")
             ),
-            "two probes called \"A\"",
+            "the probes \"a\" and \"A\" differ only in case",
         ),
     ] {
         let message = parse(&text).map(drop).expect_err(&text).to_string();

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::things::read_unique;
 use super::{Part, needed};
 use crate::scene::keys::QuantityWord;
 use crate::scene::outlet;
@@ -21,19 +22,7 @@ pub(super) struct Context<'a> {
 
 /// Reads all `[[probe]]` sections.
 pub(super) fn read_probes(sections: &[Section<'_>], context: &Context<'_>) -> Part<Vec<Probe>> {
-    let probes: Vec<Part<Probe>> = sections.iter().map(|section| read_probe(section, context)).collect();
-    let mut found: Vec<&str> = Vec::new();
-    let mut unique = Ok(());
-    for (probe, section) in probes.iter().zip(sections) {
-        let Ok(probe) = probe else { continue };
-        // Probes are files of these names, and some file systems ignore case.
-        if found.iter().any(|name| name.eq_ignore_ascii_case(&probe.name)) {
-            let message = format!("there are two probes called {:?}", probe.name);
-            unique = Err(section.complain("name", message, "unique names", "each probe has its own file"));
-        }
-        found.push(&probe.name);
-    }
-    unique?;
+    let probes = read_unique(sections, "probes", |section| read_probe(section, context), |probe| &probe.name);
     probes.into_iter().collect()
 }
 
