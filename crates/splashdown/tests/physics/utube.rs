@@ -1,6 +1,6 @@
 //! Water that swings in a U-tube. The column, 1.4 m long along its middle, has the period 2 pi sqrt(L / (2 g)) without
-//! friction (gate: within 10 %, because the water takes shorter ways through the bends). Walls and water have no friction,
-//! so the loss of height has no exact value except for what the bends take; it is compared between solvers.
+//! friction (gate: within 10 %, because the water takes shorter ways through the bends). Walls and water have no friction.
+//! The loss of height is that of the bends, which is not known exactly; it is compared between solvers.
 
 use std::f64::consts::TAU;
 
